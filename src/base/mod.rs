@@ -1,0 +1,12 @@
+//! Floats, small maths, random numbers, statistics: nothing that knows of grass.
+
+pub mod philox;
+pub mod pose;
+pub mod real;
+pub mod statistics;
+pub mod trig;
+pub mod vec3;
+
+pub use pose::{Pose, Quat};
+pub use real::Real;
+pub use vec3::Vec3;

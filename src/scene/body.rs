@@ -1,0 +1,180 @@
+//! Rigid bodies: shape, mass, motion.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A rigid body of the scene.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Body {
+    /// Unique in the scene. Bodies act in the order of their names.
+    pub name: String,
+    pub shape: Shape,
+    /// Position of the body's origin, in metres.
+    #[serde(default)]
+    pub position_m: [f64; 3],
+    /// If true, `position_m`'s y counts from the ground under it instead of from 0.
+    #[serde(default)]
+    pub above_ground: bool,
+    /// Turns about x, then y, then z of the world, in degrees.
+    #[serde(default)]
+    pub rotation_deg: [f32; 3],
+    #[serde(default)]
+    pub motion: Motion,
+    #[serde(default)]
+    pub mass: Mass,
+    #[serde(default = "default_friction")]
+    pub friction: f32,
+    #[serde(default)]
+    pub restitution: f32,
+    /// Fraction of the velocity lost per second, linear and angular.
+    #[serde(default)]
+    pub damping: [f32; 2],
+    /// How the grass feels the body.
+    #[serde(default)]
+    pub collider: Collider,
+    /// Colour, linear RGB in 0…1.
+    #[serde(default = "default_rgb")]
+    pub rgb: [f32; 3],
+}
+
+fn default_friction() -> f32 {
+    0.6
+}
+
+fn default_rgb() -> [f32; 3] {
+    [0.55, 0.12, 0.06]
+}
+
+/// The true shape of a body, about its own origin.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub enum Shape {
+    Ball {
+        radius_m: f32,
+    },
+    Box {
+        /// Full extents along x, y, z.
+        size_m: [f32; 3],
+    },
+    /// Axis along y.
+    Capsule {
+        radius_m: f32,
+        /// Length of the straight part, without the two caps.
+        length_m: f32,
+    },
+    /// Axis along y.
+    Cylinder {
+        radius_m: f32,
+        height_m: f32,
+    },
+    /// The convex hull of at least four points that do not lie in one plane.
+    ConvexHull {
+        points_m: Vec<[f32; 3]>,
+    },
+    /// A triangle mesh from an OBJ, glTF or GLB file, split into convex parts for physics and
+    /// grass alike.
+    Mesh {
+        /// Path, looked up in the scene's folder and then in the asset folders.
+        file: String,
+        #[serde(default = "unit_scale")]
+        scale: f32,
+        /// Most convex parts the mesh may be split into.
+        #[serde(default = "default_max_parts")]
+        max_parts: u32,
+    },
+    /// Several rigidly joined shapes; no meshes, vehicles or compounds inside.
+    Compound {
+        parts: Vec<Part>,
+    },
+    /// A chassis on four ray-cast wheels; +z is ahead.
+    Vehicle {
+        /// Full extents of the chassis along x, y, z.
+        chassis_m: [f32; 3],
+        wheel_radius_m: f32,
+        wheel_width_m: f32,
+    },
+}
+
+fn unit_scale() -> f32 {
+    1.0
+}
+
+fn default_max_parts() -> u32 {
+    16
+}
+
+/// One piece of a compound.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Part {
+    pub shape: Shape,
+    #[serde(default)]
+    pub position_m: [f32; 3],
+    #[serde(default)]
+    pub rotation_deg: [f32; 3],
+}
+
+/// What moves a body.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub enum Motion {
+    /// Gravity, contacts and events.
+    #[default]
+    Free,
+    /// As `Free`, with a velocity at the start.
+    Thrown {
+        velocity_m_per_s: [f32; 3],
+        #[serde(default)]
+        spin_deg_per_s: [f32; 3],
+    },
+    /// Never moves.
+    Fixed,
+    /// Follows way points by time, whatever stands in its way; smooth in between.
+    Path {
+        waypoints: Vec<Waypoint>,
+        /// Start again after the last way point.
+        #[serde(default)]
+        repeat: bool,
+    },
+}
+
+/// A place on a path.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Waypoint {
+    /// Seconds since the start of the scene, rising along the path.
+    pub at_s: f64,
+    /// Place of the body's origin; y counts from the ground if the body says `above_ground`.
+    pub position_m: [f64; 3],
+    #[serde(default)]
+    pub rotation_deg: [f32; 3],
+}
+
+/// How heavy a body is.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub enum Mass {
+    Kilograms(f32),
+    /// Kilograms per cubic metre.
+    Density(f32),
+}
+
+impl Default for Mass {
+    fn default() -> Self {
+        Self::Density(500.0)
+    }
+}
+
+/// What the grass tests its vertices against.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, JsonSchema, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Collider {
+    /// `cube` wherever half the body's thickness is at least two texels, else `analytic`.
+    #[default]
+    Auto,
+    /// Six orthographic depth faces per convex part (O09 section 5.2).
+    Cube,
+    /// The closed-form distance, or the planes of a convex part.
+    Analytic,
+}

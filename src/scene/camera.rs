@@ -1,0 +1,25 @@
+//! Named views.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A view that stays where it is, or keeps its offset to a body.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Camera {
+    pub name: String,
+    /// Place of the eye, in metres; relative to the followed body if there is one.
+    pub eye_m: [f64; 3],
+    /// Point looked at; relative to the followed body if there is one.
+    pub target_m: [f64; 3],
+    /// Vertical field of view, in degrees.
+    #[serde(default = "default_fov")]
+    pub fov_deg: f32,
+    /// Name of a body to follow (its place, not its turning).
+    #[serde(default)]
+    pub follow: Option<String>,
+}
+
+fn default_fov() -> f32 {
+    45.0
+}

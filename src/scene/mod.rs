@@ -1,0 +1,65 @@
+//! The description of a scene: what a `.ron` file says, with defaults and limits.
+//!
+//! No behaviour lives here. A scene is at once a menu entry of the window, a regression test and
+//! a benchmark input. Every length is in metres, every time in seconds, every angle that a person
+//! writes in degrees; keys carry their unit.
+
+mod body;
+mod camera;
+mod expect;
+mod grass;
+mod script;
+mod solver;
+mod terrain;
+mod wind;
+
+pub use body::{Body, Collider, Mass, Motion, Part, Shape, Waypoint};
+pub use camera::Camera;
+pub use expect::Expectation;
+pub use grass::{Grass, Species};
+pub use script::{Action, Event};
+pub use solver::{PhiloxRounds, Root, Solver};
+pub use terrain::{Ground, Terrain};
+pub use wind::Wind;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// One scene file. Every key has a default: the smallest scene is `()`.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Scene {
+    /// What the scene shows and what it checks, in a sentence or two.
+    pub description: String,
+    /// Simulated length of a headless run, in seconds.
+    pub duration_s: f64,
+    pub terrain: Terrain,
+    pub grass: Grass,
+    pub wind: Wind,
+    /// Rigid bodies present from the start. Names are unique in the scene.
+    pub bodies: Vec<Body>,
+    /// Timed events, in any order.
+    pub script: Vec<Event>,
+    /// Named views. Without one, a camera frames the bodies.
+    pub cameras: Vec<Camera>,
+    /// What must hold for the scene to pass.
+    pub expect: Vec<Expectation>,
+    pub solver: Solver,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            description: String::new(),
+            duration_s: 4.0,
+            terrain: Terrain::default(),
+            grass: Grass::default(),
+            wind: Wind::default(),
+            bodies: Vec::new(),
+            script: Vec::new(),
+            cameras: Vec::new(),
+            expect: Vec::new(),
+            solver: Solver::default(),
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Timed events.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Body, Wind};
+
+/// Something that happens at a given time.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Event {
+    /// Seconds since the start; acts at the first sub-step that begins at or after it.
+    pub at_s: f64,
+    pub action: Action,
+}
+
+/// What an event does. `body` names a body of the scene or one spawned before.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub enum Action {
+    /// Adds a body.
+    Spawn(Box<Body>),
+    /// Takes a body away; its imprint recovers.
+    Remove { body: String },
+    /// Sets position and velocity at once; nothing in between is touched.
+    Teleport {
+        body: String,
+        position_m: [f64; 3],
+        #[serde(default)]
+        velocity_m_per_s: [f32; 3],
+    },
+    /// Sets the velocity.
+    Throw {
+        body: String,
+        velocity_m_per_s: [f32; 3],
+        #[serde(default)]
+        spin_deg_per_s: [f32; 3],
+    },
+    /// Adds momentum, in kilogram metres per second.
+    Impulse {
+        body: String,
+        impulse_kg_m_per_s: [f32; 3],
+    },
+    /// Sets a vehicle's controls until the next `Drive`.
+    Drive {
+        body: String,
+        /// Engine force over the four wheels, in newtons; negative drives backwards.
+        engine_n: f32,
+        #[serde(default)]
+        steer_deg: f32,
+        #[serde(default)]
+        brake_n: f32,
+    },
+    /// Replaces the wind.
+    SetWind(Wind),
+}

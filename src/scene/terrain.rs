@@ -1,0 +1,83 @@
+//! The ground: its height samples and its colour.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The ground of a scene. It is centred on x = z = 0; heights are along +y.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Terrain {
+    pub ground: Ground,
+    /// Colours of the base map, linear RGB in 0…1: lush, dry, bare soil. A plant takes the colour
+    /// of the ground under it.
+    pub lush_rgb: [f32; 3],
+    pub dry_rgb: [f32; 3],
+    pub soil_rgb: [f32; 3],
+    /// Friction coefficient of the ground, 0 or more.
+    pub friction: f32,
+}
+
+impl Default for Terrain {
+    fn default() -> Self {
+        Self {
+            ground: Ground::default(),
+            lush_rgb: [0.10, 0.26, 0.035],
+            dry_rgb: [0.30, 0.30, 0.075],
+            soil_rgb: [0.13, 0.085, 0.045],
+            friction: 0.8,
+        }
+    }
+}
+
+/// Where the heights come from.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub enum Ground {
+    /// A plane at height 0.
+    Flat {
+        /// Extent along x and z, in metres; rounded up to whole spacings.
+        size_m: [f32; 2],
+        /// Distance of the height samples, in metres.
+        #[serde(default = "one_metre")]
+        spacing_m: f32,
+    },
+    /// Smooth rolling ground from value noise, `octaves` of it, each half as high and half as long.
+    Rolling {
+        size_m: [f32; 2],
+        #[serde(default = "one_metre")]
+        spacing_m: f32,
+        /// Half the height range of the first octave, in metres.
+        amplitude_m: f32,
+        /// Wavelength of the first octave, in metres.
+        wavelength_m: f32,
+        #[serde(default = "three_octaves")]
+        octaves: u32,
+        #[serde(default)]
+        seed: u32,
+    },
+    /// A 16-bit grey PNG: black is 0, white is `height_m`; the first row lies at the smallest z.
+    HeightMap {
+        /// Path, looked up in the scene's folder and then in the asset folders.
+        file: String,
+        spacing_m: f32,
+        /// Height of white above black, in metres.
+        height_m: f32,
+    },
+}
+
+impl Default for Ground {
+    fn default() -> Self {
+        Self::Flat {
+            size_m: [16.0, 16.0],
+            spacing_m: one_metre(),
+        }
+    }
+}
+
+fn one_metre() -> f32 {
+    1.0
+}
+
+fn three_octaves() -> u32 {
+    3
+}

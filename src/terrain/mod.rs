@@ -1,0 +1,5 @@
+//! The ground: one surface for the collider, the plants' roots and the picture.
+
+mod height_grid;
+
+pub use height_grid::HeightGrid;
