@@ -4,6 +4,7 @@
 //! a benchmark input. Every length is in metres, every time in seconds, every angle that a person
 //! writes in degrees; keys carry their unit.
 
+pub mod assets;
 mod body;
 mod camera;
 mod expect;
