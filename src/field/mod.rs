@@ -1,0 +1,76 @@
+//! The meadow at rest: where plants stand, what shape they have, which tiles are awake.
+
+pub mod blade_shape;
+pub mod blade_table;
+pub mod grid;
+pub mod octree;
+pub mod plant;
+pub mod pose;
+pub mod slabs;
+pub mod tiles;
+pub mod wind;
+
+pub use blade_table::BladeTable;
+pub use grid::{Anchor, FieldGrid, TileId};
+pub use octree::{Bounds, Octree};
+pub use plant::{Plant, Seeds};
+pub use pose::{MAX_NODES, MAX_SEGMENTS, Nodes, wind_pose};
+pub use slabs::SlabPool;
+pub use tiles::{ActiveTile, ActiveTiles, TileState};
+pub use wind::WindNow;
+
+use crate::scene::{Grass, Solver};
+use crate::terrain::HeightGrid;
+
+/// Everything about a meadow that does not change while it is simulated.
+#[derive(Clone, Debug)]
+pub struct Field {
+    pub ground: HeightGrid,
+    pub grid: FieldGrid,
+    pub seeds: Seeds,
+    pub table: BladeTable,
+    pub octree: Octree,
+    /// Length of the longest blade, in metres: how far a plant can reach from its root.
+    pub reach_m: f32,
+}
+
+/// Why a meadow cannot be laid out.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum FieldError {
+    #[error(transparent)]
+    Grid(#[from] grid::GridError),
+    #[error(transparent)]
+    Table(#[from] blade_table::TableError),
+}
+
+impl Field {
+    pub fn new(ground: HeightGrid, grass: &Grass, solver: &Solver) -> Result<Self, FieldError> {
+        let grid = FieldGrid::new(&ground, grass, solver)?;
+        let table = BladeTable::new(grass, solver.segments, solver.root)?;
+        let seeds = Seeds::new(grass, solver.philox, &table);
+        let octree = Octree::new(&grid, &ground);
+        let reach_m = grass
+            .species
+            .iter()
+            .fold(0.0_f32, |reach, kind| reach.max(kind.height_m[1]));
+        Ok(Self {
+            ground,
+            grid,
+            seeds,
+            table,
+            octree,
+            reach_m,
+        })
+    }
+
+    /// The plant at a place of a tile's order, in its anchor's coordinates.
+    pub fn plant(&self, anchor: &Anchor, tile: TileId, place: u32) -> Option<Plant> {
+        self.seeds
+            .plant(&self.grid, &self.ground, anchor, tile, place)
+    }
+
+    /// Whether anything grows here at all.
+    pub fn is_bare(&self) -> bool {
+        self.seeds.species.is_empty() || self.grid.plants_per_triangle() == 0
+    }
+}

@@ -1,0 +1,184 @@
+//! A plant is its seed: everything about it follows from (triangle id, plant index).
+//!
+//! P15 section 2.2 with eq. 23-25: two words from Philox-2x32 place the root on the seeding
+//! triangle, a small generator gives the rest. Deviations: the hash takes the triangle's integer
+//! id instead of float coordinates (exact on every machine), the reflection of eq. 23-24 is done on
+//! the words (exact), and a plant count with a fraction is rounded by a hash of the triangle, not
+//! cut off (the mean stays right). WGSL twin: `shaders/shared/plant.wgsl`; words agree bit for
+//! bit, the floats made of them to 2 ulp.
+
+use crate::base::philox::{Pcg, philox2x32, unit};
+use crate::base::trig::{cos_turns, sin_turns};
+use crate::scene::{Grass, PhiloxRounds, Species};
+use crate::terrain::HeightGrid;
+
+use super::blade_table::{BladeTable, SpeciesRange};
+use super::grid::{ANCHOR_CELLS, Anchor, FieldGrid, TileId, ground_in_anchor};
+
+/// Most kinds of plants in one meadow.
+pub const MAX_SPECIES: usize = 8;
+
+/// One plant, in its anchor's coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plant {
+    pub root_in_anchor: [f32; 3],
+    /// Direction the blade leans to: cosine and sine of its azimuth from +x towards +z.
+    pub azimuth: [f32; 2],
+    /// Length of the centre line, in metres.
+    pub height_m: f32,
+    pub width_m: f32,
+    /// Places in the blade table, 0…1.
+    pub stiffness: f32,
+    pub lean: f32,
+    pub flexibility: f32,
+    pub species: u32,
+    /// Phase of its own trembling, and a free word for its colour.
+    pub flutter_turns: f32,
+    pub shade: u32,
+}
+
+/// The numbers of a kind of plant as the seeds use them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpeciesNumbers {
+    /// A plant is of the first kind whose bound lies above its random word.
+    pub share_below: u32,
+    pub height_m: [f32; 2],
+    pub width_m: [f32; 2],
+    /// Smallest place in the blade table and the span of places.
+    pub stiffness: [f32; 2],
+    pub lean: [f32; 2],
+    pub flexibility: f32,
+    pub tint_rgb: [f32; 3],
+}
+
+/// How seeds become plants in one meadow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seeds {
+    pub key: u32,
+    pub rounds: u32,
+    pub species: Vec<SpeciesNumbers>,
+}
+
+impl Seeds {
+    /// `table` says where each kind draws its stiffness and lean from.
+    pub fn new(grass: &Grass, philox: PhiloxRounds, table: &BladeTable) -> Self {
+        let total: f64 = grass.species.iter().map(|s| f64::from(s.share)).sum();
+        let mut below = 0.0;
+        let mut species: Vec<SpeciesNumbers> = grass
+            .species
+            .iter()
+            .zip(&table.species)
+            .map(|(kind, range)| {
+                below += f64::from(kind.share) / total;
+                // The product saturates at u32::MAX, which the last kind gets in any case.
+                numbers(kind, range, (below * 4_294_967_296.0) as u32)
+            })
+            .collect();
+        if let Some(last) = species.last_mut() {
+            last.share_below = u32::MAX;
+        }
+        Self {
+            key: grass.seed,
+            rounds: match philox {
+                PhiloxRounds::Seven => 7,
+                PhiloxRounds::Paper => 3,
+            },
+            species,
+        }
+    }
+
+    /// Number of plants on a seeding triangle.
+    pub fn plants_on(&self, grid: &FieldGrid, triangle: u32) -> u32 {
+        let word = philox2x32([triangle, u32::MAX], self.key, self.rounds)[0];
+        grid.sure_plants + u32::from(word < grid.one_more)
+    }
+
+    /// The plant at a place of a tile's order, or `None` where nothing grows: beyond the ground's
+    /// edge, or past a triangle's own count. The order takes one plant of every triangle in
+    /// turn, so that any prefix of it covers the tile evenly.
+    pub fn plant(
+        &self,
+        grid: &FieldGrid,
+        ground: &HeightGrid,
+        anchor: &Anchor,
+        tile: TileId,
+        place: u32,
+    ) -> Option<Plant> {
+        let triangles = grid.triangles_per_tile();
+        let (index, within) = (place / triangles, place % triangles);
+        let half = within & 1;
+        let offset = [(within >> 1) % grid.tile_cells, (within >> 1) / grid.tile_cells];
+        let first = grid.first_cell(tile);
+        let cell = [first[0] + offset[0], first[1] + offset[1]];
+        if cell[0] >= grid.cells[0] || cell[1] >= grid.cells[1] {
+            return None;
+        }
+        let triangle = ((cell[1] * grid.cells[0] + cell[0]) << 1) | half;
+        if index >= grid.sure_plants && index >= self.plants_on(grid, triangle) {
+            return None;
+        }
+        let words = philox2x32([triangle, index], self.key, self.rounds);
+        let [x, z] = root_in_cell(cell, half, words);
+        let x = ((cell[0] % ANCHOR_CELLS) as f32 + x) * grid.cell_m;
+        let z = ((cell[1] % ANCHOR_CELLS) as f32 + z) * grid.cell_m;
+        let root_in_anchor = [x, ground_in_anchor(ground, anchor, x, z), z];
+        Some(self.grow(words, root_in_anchor))
+    }
+
+    fn grow(&self, words: [u32; 2], root_in_anchor: [f32; 3]) -> Plant {
+        let mut random = Pcg::from_words(words);
+        let choice = random.next_word();
+        let species = self
+            .species
+            .iter()
+            .position(|s| choice < s.share_below)
+            .unwrap_or(self.species.len() - 1);
+        let kind = &self.species[species];
+        let mut draw = |range: [f32; 2]| range[0] + range[1] * unit(random.next_word());
+        let height_m = draw(kind.height_m);
+        let width_m = draw(kind.width_m);
+        let stiffness = draw(kind.stiffness);
+        let lean = draw(kind.lean);
+        let turns = unit(random.next_word());
+        Plant {
+            root_in_anchor,
+            azimuth: [cos_turns(turns), sin_turns(turns)],
+            height_m,
+            width_m,
+            stiffness,
+            lean,
+            flexibility: kind.flexibility,
+            species: species as u32,
+            flutter_turns: unit(random.next_word()),
+            shade: random.next_word(),
+        }
+    }
+}
+
+/// Place in a seeding cell, 0…1 along x and z. Half 0 of an evenly cut cell has its right angle at
+/// (1, 0), half 1 at (0, 1); of an oddly cut one at (0, 0) and (1, 1). From the right angle both
+/// legs run along the axes, so that eq. 25 needs no vertices.
+fn root_in_cell(cell: [u32; 2], half: u32, words: [u32; 2]) -> [f32; 2] {
+    let [mut a, mut b] = words;
+    // Eq. 23-24: r₁ + r₂ ≥ 1, the carry of the sum, reflects both.
+    if a.checked_add(b).is_none() {
+        (a, b) = (!a, !b);
+    }
+    let even = (cell[0] + cell[1]) & 1 == 0;
+    let right_angle_at_end = [even != (half == 1), half == 1];
+    let along = |at_end: bool, r: u32| if at_end { 1.0 - unit(r) } else { unit(r) };
+    [along(right_angle_at_end[0], a), along(right_angle_at_end[1], b)]
+}
+
+fn numbers(kind: &Species, range: &SpeciesRange, share_below: u32) -> SpeciesNumbers {
+    let span = |[low, high]: [f32; 2]| [low, high - low];
+    SpeciesNumbers {
+        share_below,
+        height_m: span(kind.height_m),
+        width_m: span(kind.width_m),
+        stiffness: span(range.stiffness),
+        lean: span(range.lean),
+        flexibility: kind.flexibility,
+        tint_rgb: kind.tint_rgb,
+    }
+}

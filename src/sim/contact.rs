@@ -1,0 +1,104 @@
+//! A contact as the kernels see it: in the engine's float, with a way out for points inside.
+//!
+//! WGSL twin: `shaders/shared/contact.wgsl`.
+
+use crate::base::{Pose, Real, Vec3};
+
+use super::depth_cube::DepthCube;
+use super::parts::Part;
+use super::solid::{NO_FACE, Solid};
+use super::work::Contact;
+
+/// One part near a tile, ready for its vertices.
+#[derive(Clone, Debug)]
+pub struct Touch<'a, R> {
+    pub from: Pose<R>,
+    pub to: Pose<R>,
+    pub radius_m: R,
+    pub sweeps: u32,
+    /// Body and part, in the upper bits of a vertex's memory of its face.
+    key: u32,
+    collider: ColliderOf<'a, R>,
+}
+
+#[derive(Clone, Debug)]
+enum ColliderOf<'a, R> {
+    Cube(&'a DepthCube),
+    Analytic(&'a Solid<R>),
+}
+
+/// Bits of a vertex's memory that hold the face; 0 there means none, others are the face + 1.
+const FACE_BITS: u32 = 8;
+const FACE_MASK: u32 = (1 << FACE_BITS) - 1;
+/// Bits that tell the parts of a body apart.
+const PART_BITS: u32 = 8;
+
+impl<'a, R: Real> Touch<'a, R> {
+    /// Prepares a contact. A part whose cube is not drawn yet is tested by its closed form.
+    /// `grown` is the part's solid with the skin, in the engine's float.
+    pub fn new(contact: &Contact, part: &'a Part, grown: &'a Solid<R>) -> Self {
+        let collider = match &part.cube {
+            Some(cube) if contact.uses_cube => ColliderOf::Cube(cube),
+            _ => ColliderOf::Analytic(grown),
+        };
+        Self {
+            from: contact.from.cast(),
+            to: contact.to.cast(),
+            radius_m: R::of(contact.radius_m),
+            sweeps: contact.sweeps,
+            key: memory_key(contact),
+            collider,
+        }
+    }
+
+    /// True where the swept ball around the part may reach a ball around a plant's root.
+    pub fn reaches(&self, root: Vec3<R>, reach: R) -> bool {
+        let way = self.to.place - self.from.place;
+        let length_squared = way.length_squared();
+        let t = if length_squared > R::of(1e-12) {
+            ((root - self.from.place).dot(way) / length_squared).clamp(R::ZERO, R::ONE)
+        } else {
+            R::ZERO
+        };
+        let nearest = self.from.place + way * t;
+        let distance = self.radius_m + reach;
+        (root - nearest).length_squared() <= distance * distance
+    }
+
+    /// True where a vertex is inside the part at `pose`.
+    pub fn holds(&self, pose: &Pose<R>, vertex: Vec3<R>) -> bool {
+        let p = pose.inverse_point(vertex);
+        match self.collider {
+            ColliderOf::Cube(cube) => cube.inside(p),
+            ColliderOf::Analytic(solid) => solid.depth(p) > R::ZERO,
+        }
+    }
+
+    /// Moves a vertex out of the part at `pose`. `memory` is the vertex's word about the face it
+    /// left through; it is kept up to date. Returns whether the vertex was inside.
+    pub fn push_out(&self, pose: &Pose<R>, vertex: &mut Vec3<R>, memory: &mut u32) -> bool {
+        let p = pose.inverse_point(*vertex);
+        let kept = if *memory & !FACE_MASK == self.key && *memory & FACE_MASK != 0 {
+            (*memory & FACE_MASK) - 1
+        } else {
+            NO_FACE
+        };
+        let exit = match self.collider {
+            ColliderOf::Cube(cube) => cube.exit(p, kept),
+            ColliderOf::Analytic(solid) => solid.exit(p, kept),
+        };
+        let Some(exit) = exit else {
+            return false;
+        };
+        *vertex += pose.turn.rotate(exit.normal) * exit.depth;
+        *memory = self.key | ((exit.face + 1) & FACE_MASK);
+        true
+    }
+}
+
+/// Body and part of a contact as the upper bits of a vertex's memory. Bodies share keys beyond
+/// 65,536 and parts beyond 256: a shared key costs a steady face at worst.
+pub fn memory_key(contact: &Contact) -> u32 {
+    let part = contact.part_in_body & ((1 << PART_BITS) - 1);
+    (contact.body << (FACE_BITS + PART_BITS)) | (part << FACE_BITS)
+}

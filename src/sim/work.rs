@@ -1,0 +1,155 @@
+//! What one sub-step asks of the passes: plain lists, the same for every engine.
+
+use crate::base::Pose;
+use crate::bodies::{Link, RigidShape};
+use crate::field::{Anchor, Bounds, Field, TileId, WindNow};
+use crate::scene::Solver;
+
+use super::parts::Parts;
+
+/// The work of one sub-step.
+#[derive(Clone, Debug, Default)]
+pub struct Work {
+    /// Tick at the end of the sub-step; the first is 1.
+    pub now: u32,
+    pub wind: WindNow,
+    /// Active tiles, in the order of their ids.
+    pub tiles: Vec<TileWork>,
+    /// Runs of contacts, one run per colliding tile.
+    pub contacts: Vec<Contact>,
+}
+
+/// An active tile.
+#[derive(Clone, Debug)]
+pub struct TileWork {
+    pub tile: TileId,
+    pub slab: u32,
+    pub anchor: Anchor,
+    /// The tile's run of contacts; empty for a recovering tile.
+    pub contacts: std::ops::Range<u32>,
+}
+
+/// One convex part that may touch a tile during the sub-step, in the coordinates of the tile's
+/// anchor. Parts come in the order of their bodies' names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// Index into [`Parts::parts`].
+    pub part: u32,
+    /// Rank of the body.
+    pub body: u32,
+    /// Number of the contact's part within its body, to tell its faces from another part's.
+    pub part_in_body: u32,
+    /// Tested with the depth cube instead of the closed form.
+    pub uses_cube: bool,
+    /// Pieces the sub-step is cut into for this body: it travels at most half its half
+    /// thickness in each.
+    pub sweeps: u32,
+    /// `anchor_from_part` at the start and the end of the sub-step.
+    pub from: Pose<f64>,
+    pub to: Pose<f64>,
+    /// Radius about the part's origin that holds the part, in metres.
+    pub radius_m: f64,
+}
+
+/// A link that may touch grass in this sub-step, with what follows from its motion.
+#[derive(Clone, Debug)]
+pub struct Mover {
+    pub link: Link,
+    /// Bounds swept from start to end.
+    pub bounds: Bounds,
+    pub sweeps: u32,
+    /// True if more sweeps were needed than the solver allows.
+    pub capped: bool,
+}
+
+/// Grows bounds by what a turning body's corners may bulge between two poses.
+fn bulge_m(link: &Link, radius_m: f64) -> f64 {
+    let (a, b) = (link.from.turn, link.to.turn);
+    let half_cos = (a.v.dot(b.v) + a.w * b.w).abs().min(1.0);
+    // The sagitta of an arc of angle φ is r(1 − cos(φ/2)); |a·b| is that very cosine.
+    radius_m * (1.0 - half_cos)
+}
+
+/// Longest way any point of a link goes in the sub-step, in metres.
+fn travel_m(link: &Link, radius_m: f64) -> f64 {
+    let (a, b) = (link.from.turn, link.to.turn);
+    let half_cos = (a.v.dot(b.v) + a.w * b.w).abs().min(1.0);
+    let turned = 2.0 * libm::acos(half_cos) * radius_m;
+    (link.to.place - link.from.place).length() + turned
+}
+
+impl Mover {
+    pub fn new(link: &Link, shape: &RigidShape, solver: &Solver) -> Self {
+        let skin = f64::from(solver.skin_m);
+        let bounds_at = |pose: Pose<f64>| {
+            let boxes = shape.parts.iter().map(|part| turned_box(pose, part.bounds_m));
+            boxes.reduce(Bounds::union).unwrap_or(Bounds {
+                low: pose.place.to_f64(),
+                high: pose.place.to_f64(),
+            })
+        };
+        let swept = bounds_at(link.from).union(bounds_at(link.to));
+        let step = 0.5 * shape.half_thickness_m;
+        let wished = (travel_m(link, shape.bounding_radius_m) / step).ceil().max(1.0);
+        Self {
+            link: link.clone(),
+            bounds: swept.grown(skin + bulge_m(link, shape.bounding_radius_m)),
+            sweeps: wished.min(f64::from(solver.max_sweeps)) as u32,
+            capped: wished > f64::from(solver.max_sweeps),
+        }
+    }
+}
+
+/// World bounds of a box in a body's space.
+fn turned_box(world_from_body: Pose<f64>, [low, high]: [[f64; 3]; 2]) -> Bounds {
+    let mut bounds: Option<Bounds> = None;
+    for corner in 0..8 {
+        let p = [0, 1, 2].map(|a| if corner >> a & 1 == 0 { low[a] } else { high[a] });
+        let p = world_from_body.point(crate::base::Vec3::of(p)).to_f64();
+        let here = Bounds { low: p, high: p };
+        bounds = Some(bounds.map_or(here, |b| b.union(here)));
+    }
+    bounds.unwrap_or(Bounds {
+        low,
+        high,
+    })
+}
+
+impl Work {
+    /// Lists the contacts of one colliding tile with the movers whose bounds reach its plants.
+    pub fn add_contacts(
+        &mut self,
+        field: &Field,
+        parts: &Parts,
+        solver: &Solver,
+        anchor: &Anchor,
+        movers: &[&Mover],
+    ) -> std::ops::Range<u32> {
+        let first = self.contacts.len() as u32;
+        let origin = crate::base::Vec3::of(field.grid.anchor_in_world(anchor, &field.ground));
+        for mover in movers {
+            let link = &mover.link;
+            let range = parts.of_shape(link.shape);
+            for part in range.clone() {
+                let local = |world_from_body: Pose<f64>| {
+                    let part_pose = parts.parts[part].pose;
+                    Pose {
+                        turn: part_pose.turn.then(world_from_body.turn),
+                        place: world_from_body.point(part_pose.place) - origin,
+                    }
+                };
+                self.contacts.push(Contact {
+                    part: part as u32,
+                    body: link.body,
+                    part_in_body: (part - range.start) as u32,
+                    uses_cube: parts.resolves_to_cube(part, link.collider, solver.cube_resolution),
+                    sweeps: mover.sweeps,
+                    from: local(link.from),
+                    to: local(link.to),
+                    radius_m: parts.parts[part].radius_m,
+                });
+            }
+        }
+        first..self.contacts.len() as u32
+    }
+}
