@@ -1,0 +1,321 @@
+use super::*;
+
+const LEANS_DEG: [f64; 4] = [0.0, 1.0, 5.0, 90.0];
+const ROOTS: [Root; 2] = [Root::Paper, Root::Double];
+
+/// The same equations from the other end. With ψ = π − θ the opening of a hinge is the weighted
+/// sum of sin ψ above it, so that the tip's ψ gives every angle down to the root; it is bisected
+/// until the root leans as asked. No derivative, no linear system, no common code. None where a
+/// long soft blade's tip hangs straighter than the smallest float.
+fn by_shooting(segments: u32, k_prime: f64, root: Root, lean_rad: f64) -> Option<Vec<f64>> {
+    let n = segments as usize;
+    // Angles from the tip down, and ψ_0; None once the chain turns past upright.
+    let shoot = |psi_tip: f64| -> Option<(Vec<f64>, f64)> {
+        let (mut psi, mut torque, mut all) = (psi_tip, 0.0, Vec::new());
+        for j in (1..=n).rev() {
+            if psi >= PI {
+                return None;
+            }
+            all.push(psi);
+            torque += ((n - j) as f64 + 0.5) * libm::sin(psi);
+            let spring = match (j, root) {
+                (1, Root::Double) => 2.0 * k_prime,
+                _ => k_prime,
+            };
+            psi += torque / spring;
+        }
+        Some((all, psi))
+    };
+    // Bisects the logarithm: a soft blade's tip hangs straight within 1e-60 and less.
+    let (mut low, mut high) = (-700.0, PI.ln());
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        match shoot(libm::exp(middle)) {
+            Some((_, psi_root)) if psi_root < PI - lean_rad => low = middle,
+            _ => high = middle,
+        }
+    }
+    let (all, _) = shoot(libm::exp(low))?;
+    Some(all.iter().rev().map(|psi| PI - psi).collect())
+}
+
+fn largest_node_gap<R: Real>(shape: &BladeShape<R>, want: &[f64]) -> f64 {
+    let want: Vec<[f64; 2]> = nodes(want);
+    let gap = |(a, b): (&[R; 2], &[f64; 2])| (a[0].to_f64() - b[0]).hypot(a[1].to_f64() - b[1]);
+    shape.nodes.iter().zip(&want).map(gap).fold(0.0, f64::max)
+}
+
+/// A decade at a time over the range that is promised.
+fn stiffnesses() -> impl Iterator<Item = f64> {
+    (-12..=12).map(|i| 10.0_f64.powf(f64::from(i) * 0.5))
+}
+
+#[test]
+fn printed_figures() {
+    // N = 8 with the paper's root: tip in units of the length, ten digits.
+    for (k, tip) in [
+        (16.0, [0.468_668_189_6, -0.718_826_696_2]),
+        (32.0, [0.757_528_809_4, -0.395_421_155_6]),
+        (64.0, [0.809_487_066_9, 0.491_039_849_4]),
+    ] {
+        let shape = solve::<f64>(8, k, Root::Paper, 0.0).expect("a plain blade");
+        let got = shape.nodes[8];
+        let gap = (got[0] - tip[0]).hypot(got[1] - tip[1]);
+        assert!(gap < 1e-10, "k′ = {k}: {got:?}");
+    }
+    // Tip angle, energy at k′ = 0.5 and 2, and every opening at 2.
+    let soft = solve(8, 0.5, Root::Paper, 0.0).expect("a plain blade");
+    assert!((soft.angles_rad[7] - 3.141592488907).abs() < 1e-11);
+    assert!((soft.energy - -29.67868819919).abs() < 1e-10);
+    let shape = solve(8, 2.0, Root::Paper, 0.0).expect("a plain blade");
+    let openings = [
+        2.553063780849,
+        0.4712962739964,
+        0.09116245329965,
+        0.01947767409381,
+        0.004644720996683,
+        0.001236160032113,
+        0.0003466722046322,
+        7.298362265188e-5,
+    ];
+    let mut angle = 0.0;
+    for (j, opening) in openings.iter().enumerate() {
+        angle += opening;
+        assert!((shape.angles_rad[j] - angle).abs() < 1e-11, "segment {j}");
+    }
+    assert!((shape.energy - -23.94262958209).abs() < 1e-10);
+}
+
+#[test]
+fn critical_stiffness_as_tabulated() {
+    for (n, root, want) in [
+        (1, Root::Paper, 0.5),
+        (1, Root::Double, 0.25),
+        (3, Root::Paper, 5.697519191807005),
+        (3, Root::Double, 3.6583123951777),
+        (8, Root::Paper, 78.91693787279554),
+        (8, Root::Double, 65.85949519903748),
+        (64, Root::Paper, 34242.373138868),
+        (64, Root::Double, 33452.26180664366),
+    ] {
+        let got = critical_stiffness(n, root).expect("a valid count");
+        // The table has 13 digits.
+        assert!((got / want - 1.0).abs() < 1e-12, "{n} {root:?}: {got}");
+    }
+}
+
+#[test]
+fn every_stiffness_count_and_lean() {
+    for segments in [1, 2, 3, 4, 5, 8, 13, 16, 32, 64] {
+        for root in ROOTS {
+            let critical = critical_stiffness(segments, root).expect("a valid count");
+            for near in [0.9, 0.98, 0.998, 1.002, 1.02, 1.1] {
+                check_all_leans(segments, critical * near, root, critical);
+            }
+            for k in stiffnesses() {
+                check_all_leans(segments, k, root, critical);
+            }
+        }
+    }
+}
+
+fn check_all_leans(segments: u32, k_prime: f64, root: Root, critical: f64) {
+    for lean_deg in LEANS_DEG {
+        let k32 = k_prime as f32;
+        let lean32 = (lean_deg as f32).to_radians();
+        let case = Case {
+            segments,
+            // The f64 run takes the rounded numbers, so that both have the same right answer.
+            k_prime: f64::from(k32),
+            root,
+            lean_rad: f64::from(lean32),
+            critical,
+        };
+        let wide = solve(segments, case.k_prime, root, case.lean_rad).expect("in range");
+        let narrow = solve(segments, k32, root, lean32).expect("in range");
+        let away = (case.k_prime / critical - 1.0).abs();
+        check_laws(&wide, case.lean_rad, 1e-13, &case);
+        check_laws(&narrow, case.lean_rad, 1e-6, &case);
+        if lean_deg >= 1.0 || away > 1e-2 {
+            assert!(wide.iterations <= 20, "{case:?}: {} steps", wide.iterations);
+        }
+        if lean_deg >= 1.0 || away > 1e-3 {
+            check_nodes(&wide, &narrow, &case);
+        }
+    }
+}
+
+#[derive(Debug)]
+struct Case {
+    segments: u32,
+    k_prime: f64,
+    root: Root,
+    lean_rad: f64,
+    critical: f64,
+}
+
+fn check_laws<R: Real>(shape: &BladeShape<R>, lean: f64, residual: f64, case: &Case) {
+    assert!(
+        shape.residual.to_f64() <= residual,
+        "{case:?}: {:?}",
+        shape.residual
+    );
+    // The lean is rounded to the result's float as well.
+    let mut below = lean - 1e-7;
+    for angle in &shape.angles_rad {
+        let angle = angle.to_f64();
+        assert!(
+            (0.0..=PI).contains(&angle) && angle >= below,
+            "{case:?}: {:?}",
+            shape.angles_rad
+        );
+        below = angle;
+    }
+    let n = shape.angles_rad.len();
+    assert_eq!(shape.nodes.len(), n + 1, "{case:?}");
+}
+
+fn check_nodes(wide: &BladeShape<f64>, narrow: &BladeShape<f32>, case: &Case) {
+    let want = if case.lean_rad == 0.0 && case.k_prime > case.critical {
+        vec![0.0; case.segments as usize]
+    } else if let Some(angles) = by_shooting(case.segments, case.k_prime, case.root, case.lean_rad)
+    {
+        angles
+    } else {
+        let soft_and_long = case.segments >= 32 && case.k_prime < 1e-2;
+        assert!(soft_and_long, "{case:?}: no independent answer");
+        return;
+    };
+    let gap = largest_node_gap(wide, &want);
+    assert!(gap <= 1e-10, "{case:?}: f64 nodes off by {gap:e}");
+    let gap = largest_node_gap(narrow, &want);
+    assert!(gap <= 1e-6, "{case:?}: f32 nodes off by {gap:e}");
+}
+
+/// Energy straight from its definition, lowered one angle at a time by golden-section search.
+fn by_energy_descent(k_prime: f64, root_factor: f64, lean: f64, n: usize) -> (Vec<f64>, f64) {
+    let energy = |angles: &[f64]| -> f64 {
+        let mut total = 0.0;
+        let mut below = lean;
+        for (j, &a) in angles.iter().enumerate() {
+            let spring = if j == 0 {
+                root_factor * k_prime
+            } else {
+                k_prime
+            };
+            total += 0.5 * spring * (a - below) * (a - below);
+            total += ((n - 1 - j) as f64 + 0.5) * a.cos();
+            below = a;
+        }
+        total
+    };
+    let mut angles = vec![1.0; n];
+    for _ in 0..3000 {
+        for j in 0..n {
+            let (mut low, mut high) = (0.0, PI);
+            while high - low > 1e-9 {
+                let third = (high - low) / 3.0;
+                let mut at = |angle: f64| {
+                    angles[j] = angle;
+                    energy(&angles)
+                };
+                if at(low + third) < at(high - third) {
+                    high -= third;
+                } else {
+                    low += third;
+                }
+            }
+            angles[j] = 0.5 * (low + high);
+        }
+    }
+    let least = energy(&angles);
+    (angles, least)
+}
+
+#[test]
+fn the_shape_has_the_least_energy() {
+    for (n, k, root, lean) in [
+        (3, 2.0, Root::Paper, 0.0),
+        (4, 9.0, Root::Double, 0.3),
+        (6, 20.0, Root::Paper, 0.1),
+    ] {
+        let shape = solve(n, k, root, lean).expect("a plain blade");
+        let root_factor = if root == Root::Double { 2.0 } else { 1.0 };
+        let (angles, least) = by_energy_descent(k, root_factor, lean, n as usize);
+        // A search by values sees a minimum no sharper than √ε ≈ 1.5e-8, amplified by the
+        // condition of the chain (below 100 here).
+        for (got, want) in shape.angles_rad.iter().zip(&angles) {
+            assert!(
+                (got - want).abs() < 5e-6,
+                "N = {n}: {shape:?} against {angles:?}"
+            );
+        }
+        assert!((shape.energy - least).abs() < 1e-9, "N = {n}");
+    }
+}
+
+#[test]
+fn at_the_critical_stiffness_the_search_ends() {
+    for segments in [1, 8, 64] {
+        for root in ROOTS {
+            let k = critical_stiffness(segments, root).expect("a valid count");
+            for nudge in [1.0 - 1e-6, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 1.0 + 1e-6] {
+                let shape = solve(segments, k * nudge, root, 0.0).expect("it settles");
+                let case = Case {
+                    segments,
+                    k_prime: k * nudge,
+                    root,
+                    lean_rad: 0.0,
+                    critical: k,
+                };
+                check_laws(&shape, 0.0, 1e-13, &case);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_tip_hangs_below_the_root_when_soft() {
+    // Where the tip is level with the root, N = 8.
+    for (root, level) in [(Root::Paper, 47.67), (Root::Double, 37.88)] {
+        let tip_y = |k: f64| solve(8, k, root, 0.0).expect("a plain blade").nodes[8][1];
+        assert!(
+            tip_y(level - 0.01) < 0.0 && tip_y(level + 0.01) > 0.0,
+            "{root:?}"
+        );
+    }
+}
+
+#[test]
+fn the_same_material_keeps_its_shape_at_another_count() {
+    // With root stiffness 2k the error falls with N²: to 0.017 L at 8 segments, a quarter at 16.
+    let tip = |n: u32| {
+        let k = stiffness_for_segments(50.0, n);
+        solve(n, k, Root::Double, 0.1).expect("a plain blade").nodes[n as usize]
+    };
+    let gap = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    let (eight, sixteen, beam) = (gap(tip(8), tip(64)), gap(tip(16), tip(64)), tip(64));
+    assert!(
+        eight < 0.017 && sixteen < 0.3 * eight,
+        "{eight} {sixteen} {beam:?}"
+    );
+}
+
+#[test]
+fn nonsense_is_refused() {
+    let plain = |n, k, lean: f64| solve::<f64>(n, k, Root::Double, lean);
+    assert_eq!(plain(0, 1.0, 0.0), Err(ShapeError::Segments(0)));
+    assert_eq!(plain(65, 1.0, 0.0), Err(ShapeError::Segments(65)));
+    for k in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e10] {
+        assert!(
+            matches!(plain(8, k, 0.0), Err(ShapeError::Stiffness(_))),
+            "{k}"
+        );
+    }
+    for lean in [-0.1, 4.0, f64::NAN] {
+        assert!(
+            matches!(plain(8, 1.0, lean), Err(ShapeError::Lean(_))),
+            "{lean}"
+        );
+    }
+}
