@@ -20,4 +20,5 @@ pub mod base;
 pub mod bodies;
 pub mod field;
 pub mod scene;
+pub mod sim;
 pub mod terrain;

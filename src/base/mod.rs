@@ -9,4 +9,4 @@ pub mod vec3;
 
 pub use pose::{Pose, Quat};
 pub use real::Real;
-pub use vec3::Vec3;
+pub use vec3::{Vec3, vec3};

@@ -38,7 +38,11 @@ pub fn fit_line(points: &[(f64, f64)]) -> Option<Line> {
         return None;
     }
     let slope = sxy / sxx;
-    let r_squared = if syy > 0.0 { sxy * sxy / (sxx * syy) } else { 1.0 };
+    let r_squared = if syy > 0.0 {
+        sxy * sxy / (sxx * syy)
+    } else {
+        1.0
+    };
     Some(Line {
         fixed: mean_y - slope * mean_x,
         slope,

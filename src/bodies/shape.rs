@@ -30,12 +30,22 @@ pub struct ConvexPart {
 /// The solid of a part, about the part's own origin. Lengths in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Solid {
-    Ball { radius: f64 },
-    Box { half: [f64; 3] },
+    Ball {
+        radius: f64,
+    },
+    Box {
+        half: [f64; 3],
+    },
     /// Axis along y, from −half to +half, with round caps.
-    Capsule { radius: f64, half: f64 },
+    Capsule {
+        radius: f64,
+        half: f64,
+    },
     /// Axis along y.
-    Cylinder { radius: f64, half: f64 },
+    Cylinder {
+        radius: f64,
+        half: f64,
+    },
     /// The points with n·p ≤ d for every plane [nx, ny, nz, d], n of unit length.
     Convex {
         planes: Vec<[f64; 4]>,

@@ -107,7 +107,10 @@ impl Seeds {
         let triangles = grid.triangles_per_tile();
         let (index, within) = (place / triangles, place % triangles);
         let half = within & 1;
-        let offset = [(within >> 1) % grid.tile_cells, (within >> 1) / grid.tile_cells];
+        let offset = [
+            (within >> 1) % grid.tile_cells,
+            (within >> 1) / grid.tile_cells,
+        ];
         let first = grid.first_cell(tile);
         let cell = [first[0] + offset[0], first[1] + offset[1]];
         if cell[0] >= grid.cells[0] || cell[1] >= grid.cells[1] {
@@ -167,7 +170,10 @@ fn root_in_cell(cell: [u32; 2], half: u32, words: [u32; 2]) -> [f32; 2] {
     let even = (cell[0] + cell[1]) & 1 == 0;
     let right_angle_at_end = [even != (half == 1), half == 1];
     let along = |at_end: bool, r: u32| if at_end { 1.0 - unit(r) } else { unit(r) };
-    [along(right_angle_at_end[0], a), along(right_angle_at_end[1], b)]
+    [
+        along(right_angle_at_end[0], a),
+        along(right_angle_at_end[1], b),
+    ]
 }
 
 fn numbers(kind: &Species, range: &SpeciesRange, share_below: u32) -> SpeciesNumbers {

@@ -59,7 +59,10 @@ mod tests {
     #[test]
     fn slabs_come_back_and_the_limit_is_counted() {
         let mut pool = SlabPool::new(2);
-        assert_eq!((pool.take(), pool.take(), pool.take()), (Some(0), Some(1), None));
+        assert_eq!(
+            (pool.take(), pool.take(), pool.take()),
+            (Some(0), Some(1), None)
+        );
         assert_eq!(pool.refused, 1);
         pool.give_back(0);
         assert_eq!(pool.in_use(), 1);

@@ -119,7 +119,10 @@ mod tests {
             assert!(active.update(&[7], now, 5).rested.is_empty(), "tick {now}");
         }
         assert_eq!(active.update(&[7], 16, 5).rested, [(3, 0)]);
-        assert_eq!((active.len(), active.peak, active.slabs.in_use()), (1, 2, 1));
+        assert_eq!(
+            (active.len(), active.peak, active.slabs.in_use()),
+            (1, 2, 1)
+        );
         assert_eq!(active.update(&[9], 17, 5).woken, [(9, 0)]);
     }
 

@@ -57,7 +57,10 @@ impl WindNow {
     /// The wind `time_s` after the start over anchors `anchor_m` wide; `fade` scales its strength.
     pub fn at(wind: &Wind, time_s: f64, anchor_m: f64, fade: f64) -> Self {
         let turn = f64::from(wind.direction_deg) / 360.0;
-        let along = [libm::cos(turn * std::f64::consts::TAU), libm::sin(turn * std::f64::consts::TAU)];
+        let along = [
+            libm::cos(turn * std::f64::consts::TAU),
+            libm::sin(turn * std::f64::consts::TAU),
+        ];
         let across = [-along[1], along[0]];
         let waves = SHAPES.map(|(length, slope, share)| {
             let per_metre = 1.0 / (f64::from(wind.gust_length_m) * length);

@@ -24,7 +24,9 @@ pub fn touched<R: Real>(
             (1..=sweeps).any(|sweep| {
                 let share = R::of(f64::from(sweep)) / R::of(f64::from(sweeps));
                 let pose = touch.from.lerp(touch.to, share);
-                nodes[1..=segments].iter().any(|&node| touch.holds(&pose, node))
+                nodes[1..=segments]
+                    .iter()
+                    .any(|&node| touch.holds(&pose, node))
             })
         })
 }

@@ -40,7 +40,8 @@ impl Parts {
             self.first.push(self.parts.len() as u32);
             self.half_thickness_m.push(shape.half_thickness_m);
             self.radius_m.push(shape.bounding_radius_m);
-            self.parts.extend(shape.parts.iter().map(|part| new_part(part, skin_m)));
+            self.parts
+                .extend(shape.parts.iter().map(|part| new_part(part, skin_m)));
         }
     }
 

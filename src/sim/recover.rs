@@ -74,7 +74,10 @@ mod tests {
                     .find(|&age| offset_left(age, 1.0 / (hz * 2.0)) <= share)
                     .map(|age| f64::from(age) / hz);
                 let got = age.unwrap_or(f64::INFINITY);
-                assert!((got - want).abs() <= 1.0 / hz + 1e-9, "{hz} Hz: {got} for {want}");
+                assert!(
+                    (got - want).abs() <= 1.0 / hz + 1e-9,
+                    "{hz} Hz: {got} for {want}"
+                );
             }
         }
     }
@@ -92,7 +95,10 @@ mod tests {
                 let nodes = recovering_pose(&wind, &offsets, age, 1.0 / 240.0, 0.05);
                 for j in 0..8 {
                     let length = (nodes[j + 1] - nodes[j]).length();
-                    assert!((length - 0.05).abs() < 1e-12, "{degrees}° age {age}: {length}");
+                    assert!(
+                        (length - 0.05).abs() < 1e-12,
+                        "{degrees}° age {age}: {length}"
+                    );
                 }
             }
         }
@@ -102,6 +108,9 @@ mod tests {
     fn at_the_end_it_is_the_wind_pose_itself() {
         let wind = upright();
         let offsets = vec![vec3(0.1, -0.2, 0.3); 8];
-        assert_eq!(recovering_pose(&wind, &offsets, 240, 1.0 / 240.0, 0.05), wind);
+        assert_eq!(
+            recovering_pose(&wind, &offsets, 240, 1.0 / 240.0, 0.05),
+            wind
+        );
     }
 }

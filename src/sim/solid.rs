@@ -17,10 +17,20 @@ pub const NO_FACE: u32 = u32::MAX;
 /// A convex solid about its own origin, in the kernel's float. Lengths in metres.
 #[derive(Clone, Debug)]
 pub enum Solid<R> {
-    Ball { radius: R },
-    Box { half: Vec3<R> },
-    Capsule { radius: R, half: R },
-    Cylinder { radius: R, half: R },
+    Ball {
+        radius: R,
+    },
+    Box {
+        half: Vec3<R>,
+    },
+    Capsule {
+        radius: R,
+        half: R,
+    },
+    Cylinder {
+        radius: R,
+        half: R,
+    },
     /// Planes, and a box that holds the solid.
     Convex {
         planes: Vec<Plane<R>>,
@@ -277,7 +287,8 @@ mod tests {
         for solid in solids() {
             let mut inside = 0;
             for k in 0..4000_u32 {
-                let at = |salt: u32| f64::from((k * 2_654_435 + salt * 40_503) % 1000) / 1000.0 - 0.5;
+                let word = |salt: u32| crate::base::philox::philox2x32([k, salt], 3, 7)[0];
+                let at = |salt: u32| f64::from(crate::base::philox::unit(word(salt))) - 0.5;
                 let p = vec3(at(1), at(2), at(3));
                 let exit = solid.exit(p, NO_FACE);
                 assert_eq!(exit.is_some(), solid.depth(p) > 0.0, "{solid:?} {p:?}");

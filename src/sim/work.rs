@@ -82,7 +82,10 @@ impl Mover {
     pub fn new(link: &Link, shape: &RigidShape, solver: &Solver) -> Self {
         let skin = f64::from(solver.skin_m);
         let bounds_at = |pose: Pose<f64>| {
-            let boxes = shape.parts.iter().map(|part| turned_box(pose, part.bounds_m));
+            let boxes = shape
+                .parts
+                .iter()
+                .map(|part| turned_box(pose, part.bounds_m));
             boxes.reduce(Bounds::union).unwrap_or(Bounds {
                 low: pose.place.to_f64(),
                 high: pose.place.to_f64(),
@@ -90,7 +93,9 @@ impl Mover {
         };
         let swept = bounds_at(link.from).union(bounds_at(link.to));
         let step = 0.5 * shape.half_thickness_m;
-        let wished = (travel_m(link, shape.bounding_radius_m) / step).ceil().max(1.0);
+        let wished = (travel_m(link, shape.bounding_radius_m) / step)
+            .ceil()
+            .max(1.0);
         Self {
             link: link.clone(),
             bounds: swept.grown(skin + bulge_m(link, shape.bounding_radius_m)),
@@ -104,15 +109,18 @@ impl Mover {
 fn turned_box(world_from_body: Pose<f64>, [low, high]: [[f64; 3]; 2]) -> Bounds {
     let mut bounds: Option<Bounds> = None;
     for corner in 0..8 {
-        let p = [0, 1, 2].map(|a| if corner >> a & 1 == 0 { low[a] } else { high[a] });
+        let p = [0, 1, 2].map(|a| {
+            if corner >> a & 1 == 0 {
+                low[a]
+            } else {
+                high[a]
+            }
+        });
         let p = world_from_body.point(crate::base::Vec3::of(p)).to_f64();
         let here = Bounds { low: p, high: p };
         bounds = Some(bounds.map_or(here, |b| b.union(here)));
     }
-    bounds.unwrap_or(Bounds {
-        low,
-        high,
-    })
+    bounds.unwrap_or(Bounds { low, high })
 }
 
 impl Work {

@@ -1,0 +1,282 @@
+//! The grass of the `cpu` engine: slabs in memory, passes over tiles on every core.
+//!
+//! A plant reads and writes nothing but its own state, so results do not depend on the number of
+//! threads, on the order of tiles, or on which slab a tile has.
+
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+
+use crate::base::{Real, Vec3};
+use crate::field::{Field, Nodes, Plant, wind_pose};
+
+use super::collide;
+use super::contact::Touch;
+use super::depth_cube::DepthCube;
+use super::meadow::Meadow;
+use super::recover::recovering_pose;
+use super::relax::{self, Place, RelaxSettings};
+use super::slab::Slab;
+use super::solid::Solid;
+use super::work::{TileWork, Work};
+
+/// State and scratch of the grass in float `R`.
+#[derive(Debug, Default)]
+pub struct Grass<R: Real> {
+    /// By slab number; `None` while no tile has it.
+    slabs: Vec<Option<Box<Slab<R>>>>,
+    /// The grown solid of every part in this engine's float.
+    grown: Vec<Solid<R>>,
+    /// Plants found touched by the last collide pass, per tile of the work.
+    touched: Vec<Vec<Touched>>,
+    /// Plants that were pushed in the last sub-step.
+    pub pushed: u64,
+    /// Most rounds any plant took since the start.
+    pub rounds_peak: u32,
+    pub times: PassTimes,
+}
+
+/// A plant to respond: its place in the tile and the sweeps it needs.
+#[derive(Clone, Copy, Debug)]
+struct Touched {
+    place: u32,
+    sweeps: u32,
+}
+
+/// Time spent in each pass since the start.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PassTimes {
+    pub depth_cubes: Duration,
+    pub collide: Duration,
+    pub relax: Duration,
+}
+
+impl<R: Real> Grass<R> {
+    pub fn new() -> Self {
+        Self {
+            slabs: Vec::new(),
+            grown: Vec::new(),
+            touched: Vec::new(),
+            pushed: 0,
+            rounds_peak: 0,
+            times: PassTimes::default(),
+        }
+    }
+
+    /// Gives woken tiles a wiped slab and frees those of tiles that rest.
+    pub fn assign_slabs(&mut self, meadow: &Meadow) {
+        let plants = meadow.field.grid.plants_per_tile() as usize;
+        let segments = meadow.scene.solver.segments as usize;
+        for &(_, slab) in &meadow.changes.rested {
+            self.slabs[slab as usize] = None;
+        }
+        self.slabs
+            .resize_with(meadow.tiles.slabs.high_water() as usize, || None);
+        for &(_, slab) in &meadow.changes.woken {
+            self.slabs[slab as usize] = Some(Box::new(Slab::new(plants, segments)));
+        }
+    }
+
+    /// Draws the depth cubes that are wanted for the first time.
+    pub fn draw_depth_cubes(&mut self, meadow: &mut Meadow) {
+        let start = Instant::now();
+        let skin = f64::from(meadow.scene.solver.skin_m);
+        let resolution = meadow.scene.solver.cube_resolution;
+        for part in &meadow.parts.parts[self.grown.len()..] {
+            self.grown.push(part.solid.grown_by(skin));
+        }
+        let undrawn = meadow.parts.undrawn();
+        let parts = &meadow.parts;
+        let drawn: Vec<(usize, DepthCube)> = undrawn
+            .into_par_iter()
+            .map(|index| (index, draw_cube(parts, index, resolution)))
+            .collect();
+        for (index, cube) in drawn {
+            meadow.parts.parts[index].cube = Some(cube);
+        }
+        self.times.depth_cubes += start.elapsed();
+    }
+
+    /// Finds the plants that a body touches.
+    pub fn collide(&mut self, meadow: &Meadow) {
+        let start = Instant::now();
+        let tiles = &meadow.work.tiles;
+        self.touched.clear();
+        self.touched.resize_with(tiles.len(), Vec::new);
+        let (slabs, grown) = (&self.slabs, &self.grown);
+        self.touched
+            .par_iter_mut()
+            .zip(tiles)
+            .filter(|(_, tile)| !tile.contacts.is_empty())
+            .for_each(|(touched, tile)| {
+                if let Some(slab) = &slabs[tile.slab as usize] {
+                    *touched = touched_plants(meadow, grown, tile, slab);
+                }
+            });
+        self.times.collide += start.elapsed();
+    }
+
+    /// Pushes the touched plants out, restores their shape and stores their offsets.
+    pub fn relax(&mut self, meadow: &Meadow) {
+        let start = Instant::now();
+        let settings = RelaxSettings::new(&meadow.scene.solver);
+        let grown = &self.grown;
+        let mut jobs: Vec<(&TileWork, &Vec<Touched>, Box<Slab<R>>)> = meadow
+            .work
+            .tiles
+            .iter()
+            .zip(&self.touched)
+            .filter(|(_, touched)| !touched.is_empty())
+            .filter_map(|(tile, touched)| {
+                Some((tile, touched, self.slabs[tile.slab as usize].take()?))
+            })
+            .collect();
+        let results: Vec<(u64, u32)> = jobs
+            .par_iter_mut()
+            .map(|(tile, touched, slab)| respond(meadow, grown, tile, touched, slab, &settings))
+            .collect();
+        for (tile, _, slab) in jobs {
+            self.slabs[tile.slab as usize] = Some(slab);
+        }
+        self.pushed = results.iter().map(|r| r.0).sum();
+        let rounds = results.iter().map(|r| r.1).max().unwrap_or(0);
+        self.rounds_peak = self.rounds_peak.max(rounds);
+        self.times.relax += start.elapsed();
+    }
+
+    /// The state of a slab in use.
+    pub fn slab(&self, slab: u32) -> Option<&Slab<R>> {
+        self.slabs.get(slab as usize)?.as_deref()
+    }
+}
+
+fn draw_cube(parts: &super::parts::Parts, index: usize, resolution: u32) -> DepthCube {
+    let part = &parts.parts[index];
+    let siblings: Vec<_> = parts.siblings(index).collect();
+    // A tenth of a millimetre, so that faces that merely meet do not hide each other.
+    let margin = 1e-4;
+    DepthCube::draw(&part.grown, resolution, |point| {
+        let in_body = part.pose.point(Vec3::of(point.to_f64()));
+        siblings
+            .iter()
+            .any(|other| other.solid.depth(other.pose.inverse_point(in_body)) > margin)
+    })
+}
+
+/// A plant's wind pose and its pose of now.
+pub fn poses<R: Real>(
+    field: &Field,
+    work: &Work,
+    step_over_t: R,
+    tile: &TileWork,
+    plant: &Plant,
+    slab: &Slab<R>,
+    place: u32,
+) -> (Nodes<R>, Nodes<R>) {
+    let segments = field.table.segments as usize;
+    let wind = wind_pose(plant, &field.table, work.wind.bend(&tile.anchor, plant));
+    let touched_at = slab.touched_at[place as usize];
+    if touched_at == 0 {
+        return (wind, wind);
+    }
+    let first = place as usize * segments;
+    let pose = recovering_pose(
+        &wind,
+        &slab.offsets[first..first + segments],
+        work.now - touched_at,
+        step_over_t,
+        segment_length(plant, segments),
+    );
+    (wind, pose)
+}
+
+/// Rest length of a plant's segments, in metres.
+pub fn segment_length<R: Real>(plant: &Plant, segments: usize) -> R {
+    R::of_f32(plant.height_m) * R::of(1.0 / segments as f64)
+}
+
+fn touches_of<'a, R: Real>(
+    meadow: &'a Meadow,
+    grown: &'a [Solid<R>],
+    tile: &TileWork,
+) -> Vec<Touch<'a, R>> {
+    meadow.work.contacts[tile.contacts.start as usize..tile.contacts.end as usize]
+        .iter()
+        .map(|contact| {
+            let part = contact.part as usize;
+            Touch::new(contact, &meadow.parts.parts[part], &grown[part])
+        })
+        .collect()
+}
+
+fn touched_plants<R: Real>(
+    meadow: &Meadow,
+    grown: &[Solid<R>],
+    tile: &TileWork,
+    slab: &Slab<R>,
+) -> Vec<Touched> {
+    let field = &meadow.field;
+    let segments = field.table.segments as usize;
+    let step_over_t = R::of(meadow.step_over_t());
+    let touches = touches_of(meadow, grown, tile);
+    let mut found = Vec::new();
+    for place in 0..field.grid.plants_per_tile() {
+        let Some(plant) = field.plant(&tile.anchor, tile.tile, place) else {
+            continue;
+        };
+        let reach = R::of_f32(plant.height_m);
+        let sweeps = relax::sweeps_for(&touches, Vec3::of_f32(plant.root_in_anchor), reach);
+        if sweeps == 0 {
+            continue;
+        }
+        let (_, pose) = poses(field, &meadow.work, step_over_t, tile, &plant, slab, place);
+        if collide::touched(&pose, segments, &touches, sweeps, reach) {
+            found.push(Touched { place, sweeps });
+        }
+    }
+    found
+}
+
+fn respond<R: Real>(
+    meadow: &Meadow,
+    grown: &[Solid<R>],
+    tile: &TileWork,
+    touched: &[Touched],
+    slab: &mut Slab<R>,
+    settings: &RelaxSettings<R>,
+) -> (u64, u32) {
+    let field = &meadow.field;
+    let segments = field.table.segments as usize;
+    let step_over_t = R::of(meadow.step_over_t());
+    let touches = touches_of(meadow, grown, tile);
+    let mut rounds_peak = 0;
+    for &Touched { place, sweeps } in touched {
+        let Some(plant) = field.plant(&tile.anchor, tile.tile, place) else {
+            continue;
+        };
+        let (wind, mut pose) = poses(field, &meadow.work, step_over_t, tile, &plant, slab, place);
+        let first = place as usize * segments;
+        let surroundings = Place {
+            ground: &field.ground,
+            anchor: &tile.anchor,
+            wind: &wind,
+            segments,
+            length: segment_length(&plant, segments),
+        };
+        let rounds = relax::respond(
+            &mut pose,
+            &mut slab.faces[first..first + segments],
+            &touches,
+            sweeps,
+            R::of_f32(plant.height_m),
+            &surroundings,
+            settings,
+        );
+        rounds_peak = rounds_peak.max(rounds);
+        for j in 0..segments {
+            slab.offsets[first + j] = pose[j + 1] - wind[j + 1];
+        }
+        slab.touched_at[place as usize] = meadow.work.now;
+    }
+    (touched.len() as u64, rounds_peak)
+}

@@ -1,0 +1,278 @@
+//! The simulated world without the grass's own state: script, bodies, wind, broad phase, slabs.
+//!
+//! Engines share it: whatever is decided here (which tiles are awake, which slab a tile has, which
+//! parts may touch it, how many sweeps a body needs) is decided once, on the CPU.
+
+use std::collections::BTreeMap;
+
+use crate::bodies::{Bodies, BodyError};
+use crate::field::grid::ANCHOR_CELLS;
+use crate::field::tiles::Changes;
+use crate::field::wind::FADE_S;
+use crate::field::{ActiveTiles, Field, FieldError, TileId, TileState, WindNow};
+use crate::scene::assets::Assets;
+use crate::scene::{Action, Event, Scene, Wind};
+use crate::terrain::TerrainError;
+
+use super::parts::Parts;
+use super::slab::slab_bytes;
+use super::work::{Mover, TileWork, Work};
+
+/// Most bytes of grass state a meadow may use.
+pub const STATE_BUDGET_BYTES: u64 = 1 << 30;
+
+/// Everything of a scene that moves or is decided per tick, but the grass's state.
+pub struct Meadow {
+    pub scene: Scene,
+    pub field: Field,
+    pub bodies: Bodies,
+    pub parts: Parts,
+    pub tiles: ActiveTiles,
+    /// What the passes have to do in the current sub-step.
+    pub work: Work,
+    /// Tiles that woke or came to rest in the current sub-step.
+    pub changes: Changes,
+    pub counters: Counters,
+    /// Sub-steps done.
+    pub ticks: u32,
+    wind: WindChange,
+    /// Events in the order of their times, and how many have happened.
+    script: Vec<Event>,
+    scripted: usize,
+    movers: Vec<Mover>,
+}
+
+/// Limits reached and things counted since the start.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Counters {
+    /// Bodies and sub-steps in which a body needed more sweeps than the solver allows.
+    pub capped_sweeps: u64,
+    /// Tiles that could not wake in a sub-step because every slab was in use.
+    pub refused_tiles: u64,
+    /// Largest number of plants in active tiles at once.
+    pub plants_peak: u64,
+    /// Largest number of bytes of grass state at once.
+    pub state_bytes_peak: u64,
+}
+
+/// The wind of now and the one before it: a change fades out and in.
+#[derive(Clone, Debug)]
+struct WindChange {
+    before: Wind,
+    now: Wind,
+    since_s: f64,
+}
+
+/// Why a meadow cannot be made or run.
+#[derive(Debug, thiserror::Error)]
+pub enum MeadowError {
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
+    #[error(transparent)]
+    Field(#[from] FieldError),
+    #[error(transparent)]
+    Body(#[from] BodyError),
+}
+
+impl Meadow {
+    /// Lays out a validated scene.
+    ///
+    /// # Errors
+    ///
+    /// A ground, a field or a body that cannot be made, each with its limit.
+    pub fn new(scene: Scene, assets: &Assets) -> Result<Self, MeadowError> {
+        let ground = crate::terrain::height_grid(&scene.terrain, assets)?;
+        let bodies = Bodies::new(&scene, assets, &ground)?;
+        let field = Field::new(ground, &scene.grass, &scene.solver)?;
+        let slab = slab_bytes(field.grid.plants_per_tile(), scene.solver.segments).max(1);
+        let slab_limit = (STATE_BUDGET_BYTES / slab).min(u64::from(field.grid.tile_count()));
+        let mut script = scene.script.clone();
+        script.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+        let wind = WindChange {
+            before: scene.wind.clone(),
+            now: scene.wind.clone(),
+            since_s: f64::NEG_INFINITY,
+        };
+        let mut meadow = Self {
+            field,
+            bodies,
+            parts: Parts::default(),
+            tiles: ActiveTiles::new(slab_limit as u32),
+            work: Work::default(),
+            changes: Changes::default(),
+            counters: Counters::default(),
+            ticks: 0,
+            wind,
+            script,
+            scripted: 0,
+            movers: Vec::new(),
+            scene,
+        };
+        meadow.work.wind = meadow.wind_at(0.0);
+        Ok(meadow)
+    }
+
+    /// Simulated time so far, in seconds.
+    pub fn time_s(&self) -> f64 {
+        f64::from(self.ticks) * self.scene.solver.substep_s
+    }
+
+    /// Ticks from the last contact to the wind pose.
+    pub fn recovery_ticks(&self) -> u32 {
+        (f64::from(self.scene.solver.recovery_s) / self.scene.solver.substep_s).ceil() as u32
+    }
+
+    /// Δt/T of the recovery.
+    pub fn step_over_t(&self) -> f64 {
+        self.scene.solver.substep_s / self.scene.solver.recovery_s
+    }
+
+    /// Lets the events happen that are due at the start of this sub-step.
+    ///
+    /// # Errors
+    ///
+    /// An event the bodies refuse.
+    pub fn script(&mut self) -> Result<(), MeadowError> {
+        // Half a nanosecond forgives the rounding of ticks · Δt.
+        let now = self.time_s() + 5e-10;
+        while self.script.get(self.scripted).is_some_and(|e| e.at_s <= now) {
+            let action = self.script[self.scripted].action.clone();
+            self.scripted += 1;
+            self.act(&action)?;
+        }
+        Ok(())
+    }
+
+    /// Lets one action happen now.
+    ///
+    /// # Errors
+    ///
+    /// An action the bodies refuse.
+    pub fn act(&mut self, action: &Action) -> Result<(), MeadowError> {
+        let now = self.time_s();
+        if let Action::SetWind(wind) = action {
+            self.wind = WindChange {
+                before: std::mem::replace(&mut self.wind.now, wind.clone()),
+                now: wind.clone(),
+                since_s: now,
+            };
+        } else {
+            self.bodies.apply(action, now)?;
+        }
+        Ok(())
+    }
+
+    /// Moves the bodies by one sub-step.
+    pub fn move_bodies(&mut self) {
+        let dt = self.scene.solver.substep_s;
+        self.bodies.step(self.time_s(), dt);
+        self.parts
+            .extend(self.bodies.shapes(), f64::from(self.scene.solver.skin_m));
+    }
+
+    /// Finds the tiles that bodies may touch and lists the work of this sub-step.
+    pub fn broad_phase(&mut self) {
+        self.ticks += 1;
+        let solver = &self.scene.solver;
+        let shapes = self.bodies.shapes();
+        self.movers = self
+            .bodies
+            .links()
+            .iter()
+            .map(|link| Mover::new(link, &shapes[link.shape as usize], solver))
+            .collect();
+        let mut near: BTreeMap<TileId, Vec<&Mover>> = BTreeMap::new();
+        if !self.field.is_bare() {
+            for mover in &self.movers {
+                self.counters.capped_sweeps += u64::from(mover.capped);
+                let (field, reach) = (&self.field, f64::from(self.field.reach_m));
+                field
+                    .octree
+                    .query(&field.grid, &field.ground, &mover.bounds, reach, |tile| {
+                        near.entry(tile).or_default().push(mover);
+                    });
+            }
+        }
+        let tiles: Vec<TileId> = near.keys().copied().collect();
+        self.changes = self.tiles.update(&tiles, self.ticks, {
+            (f64::from(solver.recovery_s) / solver.substep_s).ceil() as u32
+        });
+        let mut work = Work {
+            now: self.ticks,
+            wind: self.wind_at(f64::from(self.ticks) * solver.substep_s),
+            tiles: std::mem::take(&mut self.work.tiles),
+            contacts: std::mem::take(&mut self.work.contacts),
+        };
+        work.tiles.clear();
+        work.contacts.clear();
+        for (tile, active) in self.tiles.iter() {
+            let anchor = self.field.grid.anchor_of(tile, &self.field.ground);
+            let movers = match active.state {
+                TileState::Colliding => near.get(&tile).map_or(&[][..], Vec::as_slice),
+                TileState::Recovering => &[],
+            };
+            let contacts = work.add_contacts(&self.field, &self.parts, solver, &anchor, movers);
+            work.tiles.push(TileWork {
+                tile,
+                slab: active.slab,
+                anchor,
+                contacts,
+            });
+        }
+        self.work = work;
+        for contact in self.work.contacts.iter().filter(|c| c.uses_cube) {
+            self.parts.want_cube(contact.part as usize);
+        }
+        self.count();
+    }
+
+    fn count(&mut self) {
+        let plants = u64::from(self.field.grid.plants_per_tile());
+        let active = self.tiles.len() as u64;
+        let counters = &mut self.counters;
+        counters.refused_tiles = self.tiles.slabs.refused;
+        counters.plants_peak = counters.plants_peak.max(active * plants);
+        counters.state_bytes_peak = counters.state_bytes_peak.max(self.state_bytes());
+    }
+
+    /// Bytes of grass state in use now.
+    pub fn state_bytes(&self) -> u64 {
+        let segments = self.scene.solver.segments;
+        self.tiles.len() as u64 * slab_bytes(self.field.grid.plants_per_tile(), segments)
+    }
+
+    /// The wind at a time; the change from one wind to the next fades out and in.
+    pub fn wind_at(&self, time_s: f64) -> WindNow {
+        let anchor_m = f64::from(ANCHOR_CELLS) * f64::from(self.field.grid.cell_m);
+        let faded = ((time_s - self.wind.since_s) / FADE_S).min(1.0);
+        if faded < 0.5 {
+            WindNow::at(&self.wind.before, time_s, anchor_m, 1.0 - 2.0 * faded)
+        } else {
+            WindNow::at(&self.wind.now, time_s, anchor_m, 2.0 * faded - 1.0)
+        }
+    }
+
+    /// What each body resolved to, by name: how many of its parts are tested by cube and how many
+    /// by closed form.
+    pub fn colliders(&self) -> Vec<(String, u32, u32)> {
+        let resolution = self.scene.solver.cube_resolution;
+        let mut found: BTreeMap<String, (u32, u32)> = BTreeMap::new();
+        for link in self.bodies.links() {
+            let Some(name) = self.bodies.name_of(link.body) else {
+                continue;
+            };
+            let entry = found.entry(name.to_owned()).or_default();
+            for part in self.parts.of_shape(link.shape) {
+                if self.parts.resolves_to_cube(part, link.collider, resolution) {
+                    entry.0 += 1;
+                } else {
+                    entry.1 += 1;
+                }
+            }
+        }
+        found
+            .into_iter()
+            .map(|(name, (cubes, analytic))| (name, cubes, analytic))
+            .collect()
+    }
+}

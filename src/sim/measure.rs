@@ -1,0 +1,231 @@
+//! What is measured of a simulated meadow: penetration, strain, lean, offset.
+//!
+//! Everything is computed in `f64` from the state that an engine hands out, against the bodies'
+//! true shapes, whatever the engine itself collided with.
+
+use std::collections::BTreeMap;
+
+use crate::base::{Real, Vec3};
+use crate::field::grid::ground_in_anchor;
+use crate::field::{Plant, TileId};
+
+use super::cpu::{poses, segment_length};
+use super::meadow::Meadow;
+use super::relax::largest_strain;
+use super::slab::Slab;
+use super::work::TileWork;
+
+/// A node this close to the ground lies on it, in metres.
+const ON_GROUND_M: f64 = 1e-4;
+
+/// Where the grass's state can be read.
+pub trait GrassState<R: Real> {
+    /// The slab of an active tile.
+    fn slab(&self, slab: u32) -> Option<&Slab<R>>;
+}
+
+impl<R: Real> GrassState<R> for super::cpu::Grass<R> {
+    fn slab(&self, slab: u32) -> Option<&Slab<R>> {
+        Self::slab(self, slab)
+    }
+}
+
+/// Metrics of one instant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Snapshot {
+    /// Depths of the nodes inside a true shape that were pushed in this sub-step, in metres; nodes
+    /// pinched between body and ground not counted.
+    pub depths_m: Vec<f64>,
+    /// Movable nodes of plants pushed in this sub-step.
+    pub pushed_nodes: u64,
+    /// Nodes that lie on the ground inside a body.
+    pub pinched: u64,
+    /// Largest gap between a plant pushed in this sub-step and the body, in metres: how far its
+    /// nearest node was pushed past the surface.
+    pub over_push_m: f64,
+    pub max_strain: f64,
+    pub max_offset_m: f64,
+    /// Values that are not finite.
+    pub not_finite: u64,
+    /// Plants in active tiles.
+    pub plants: u64,
+}
+
+/// One plant of an active tile as it stands.
+#[derive(Clone, Debug)]
+pub struct Standing<R> {
+    pub plant: Plant,
+    /// World place of the anchor that `nodes` and `wind` are relative to.
+    pub origin: [f64; 3],
+    pub wind: Vec<Vec3<R>>,
+    pub nodes: Vec<Vec3<R>>,
+    /// Tick of the last contact, 0 for never.
+    pub touched_at: u32,
+}
+
+impl<R: Real> Standing<R> {
+    /// World x and z of the root.
+    pub fn root_in_world(&self) -> [f64; 2] {
+        let [x, _, z] = self.plant.root_in_anchor.map(f64::from);
+        [self.origin[0] + x, self.origin[2] + z]
+    }
+
+    /// Angle between the vertical and the line from root to tip, in radians.
+    pub fn lean_rad(&self) -> f64 {
+        let (Some(first), Some(last)) = (self.nodes.first(), self.nodes.last()) else {
+            return 0.0;
+        };
+        let [x, y, z] = (*last - *first).to_f64();
+        libm::atan2(libm::sqrt(x * x + z * z), y)
+    }
+
+    /// Mean distance of the movable nodes from the wind pose, in metres.
+    pub fn offset_m(&self) -> f64 {
+        let far = |(a, b): (&Vec3<R>, &Vec3<R>)| (*a - *b).length().to_f64();
+        let sum: f64 = self.nodes.iter().zip(&self.wind).skip(1).map(far).sum();
+        sum / (self.nodes.len().max(2) - 1) as f64
+    }
+}
+
+/// Every plant of an active tile as it stands, in the order of places.
+pub fn standing<R: Real>(meadow: &Meadow, tile: &TileWork, slab: &Slab<R>) -> Vec<Standing<R>> {
+    let field = &meadow.field;
+    let segments = field.table.segments as usize;
+    let step_over_t = R::of(meadow.step_over_t());
+    let origin = field.grid.anchor_in_world(&tile.anchor, &field.ground);
+    (0..field.grid.plants_per_tile())
+        .filter_map(|place| {
+            let plant = field.plant(&tile.anchor, tile.tile, place)?;
+            let (wind, nodes) =
+                poses(field, &meadow.work, step_over_t, tile, &plant, slab, place);
+            Some(Standing {
+                plant,
+                origin,
+                wind: wind[..=segments].to_vec(),
+                nodes: nodes[..=segments].to_vec(),
+                touched_at: slab.touched_at[place as usize],
+            })
+        })
+        .collect()
+}
+
+/// Measures every active tile.
+pub fn snapshot<R: Real>(meadow: &Meadow, state: &impl GrassState<R>) -> Snapshot {
+    let mut all = Snapshot::default();
+    for tile in &meadow.work.tiles {
+        if let Some(slab) = state.slab(tile.slab) {
+            for plant in standing(meadow, tile, slab) {
+                all.add_plant(meadow, tile, &plant);
+            }
+        }
+    }
+    all
+}
+
+impl Snapshot {
+    fn add_plant<R: Real>(&mut self, meadow: &Meadow, tile: &TileWork, plant: &Standing<R>) {
+        self.plants += 1;
+        if !plant.nodes.iter().all(|node| node.is_finite()) {
+            self.not_finite += 1;
+            return;
+        }
+        if plant.touched_at == 0 {
+            return;
+        }
+        let segments = plant.nodes.len() - 1;
+        let mut nodes = [Vec3::ZERO; crate::field::MAX_NODES];
+        nodes[..=segments].copy_from_slice(&plant.nodes);
+        let length: R = segment_length(&plant.plant, segments);
+        let strain = largest_strain(&nodes, segments, length).to_f64();
+        self.max_strain = self.max_strain.max(strain);
+        for (node, wind) in plant.nodes.iter().zip(&plant.wind).skip(1) {
+            self.max_offset_m = self.max_offset_m.max((*node - *wind).length().to_f64());
+        }
+        if plant.touched_at == meadow.work.now {
+            self.add_pushed(meadow, tile, plant);
+        }
+    }
+
+    /// Depth of a pushed plant's nodes in the parts near its tile, by their true shapes.
+    fn add_pushed<R: Real>(&mut self, meadow: &Meadow, tile: &TileWork, plant: &Standing<R>) {
+        let contacts =
+            &meadow.work.contacts[tile.contacts.start as usize..tile.contacts.end as usize];
+        let mut nearest = f64::NEG_INFINITY;
+        for node in &plant.nodes[1..] {
+            let p = Vec3::<f64>::of(node.to_f64());
+            self.pushed_nodes += 1;
+            let depth_of = |p: Vec3<f64>| {
+                contacts.iter().fold(f64::NEG_INFINITY, |deepest, contact| {
+                    let part = &meadow.parts.parts[contact.part as usize];
+                    deepest.max(part.solid.depth(contact.to.inverse_point(p)))
+                })
+            };
+            let depth = depth_of(p);
+            nearest = nearest.max(depth);
+            if depth <= 0.0 {
+                continue;
+            }
+            let ground: f64 = ground_in_anchor(&meadow.field.ground, &tile.anchor, p.x, p.z);
+            if p.y <= ground + ON_GROUND_M {
+                self.pinched += 1;
+            } else {
+                self.depths_m.push(depth);
+            }
+        }
+        if nearest.is_finite() {
+            self.over_push_m = self.over_push_m.max(-nearest);
+        }
+    }
+}
+
+/// Plants near a place on the ground: those of active tiles as they stand. `None` where no tile
+/// near the place is active.
+pub fn near<R: Real>(
+    meadow: &Meadow,
+    state: &impl GrassState<R>,
+    place_m: [f64; 2],
+    within_m: f64,
+) -> Vec<Standing<R>> {
+    let mut found = Vec::new();
+    for tile in &meadow.work.tiles {
+        let [low, high] = meadow.field.grid.tile_bounds(tile.tile, &meadow.field.ground);
+        let far = (0..2).any(|a| place_m[a] < low[a] - within_m || place_m[a] > high[a] + within_m);
+        let Some(slab) = state.slab(tile.slab).filter(|_| !far) else {
+            continue;
+        };
+        found.extend(standing(meadow, tile, slab).into_iter().filter(|plant| {
+            let [x, z] = plant.root_in_world();
+            (x - place_m[0]).powi(2) + (z - place_m[1]).powi(2) <= within_m * within_m
+        }));
+    }
+    found
+}
+
+/// A hash of the whole grass state (FNV-1a over ids, ticks and the bits of offsets), the same for
+/// any number of threads and any slabs.
+pub fn state_hash<R: Real>(meadow: &Meadow, state: &impl GrassState<R>) -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut eat = |word: u64| {
+        for byte in word.to_le_bytes() {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    };
+    eat(u64::from(meadow.ticks));
+    let tiles: BTreeMap<TileId, &TileWork> =
+        meadow.work.tiles.iter().map(|t| (t.tile, t)).collect();
+    for (id, tile) in tiles {
+        let Some(slab) = state.slab(tile.slab) else {
+            continue;
+        };
+        eat(u64::from(id));
+        for &tick in &slab.touched_at {
+            eat(u64::from(tick));
+        }
+        for offset in &slab.offsets {
+            for x in offset.to_f64() {
+                eat(x.to_bits());
+            }
+        }
+    }
+    hash
+}

@@ -1,0 +1,9 @@
+pub mod collide;
+pub mod contact;
+pub mod depth_cube;
+pub mod parts;
+pub mod recover;
+pub mod relax;
+pub mod slab;
+pub mod solid;
+pub mod work;
