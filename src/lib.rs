@@ -18,5 +18,6 @@
 
 pub mod base;
 pub mod bodies;
+pub mod gpu;
 pub mod scene;
 pub mod terrain;
