@@ -19,6 +19,7 @@
 pub mod base;
 pub mod bodies;
 pub mod field;
+pub mod gpu;
 pub mod scene;
 pub mod sim;
 pub mod terrain;

@@ -1,0 +1,207 @@
+//! Buffers that know what they hold, checked against the device's limits before they are made.
+
+use std::marker::PhantomData;
+
+use bytemuck::Pod;
+use wgpu::BufferUsages;
+
+use super::{Gpu, GpuError};
+
+/// A buffer of `len` elements of `T` on the device.
+#[derive(Clone, Debug)]
+pub struct Buffer<T> {
+    pub raw: wgpu::Buffer,
+    len: usize,
+    label: &'static str,
+    element: PhantomData<T>,
+}
+
+/// Bytes of `count` elements of `element_bytes`, if the device can hold and bind them.
+///
+/// # Errors
+/// `TooLarge` with the limit that is exceeded.
+pub fn checked_bytes(
+    gpu: &Gpu,
+    what: &str,
+    count: u64,
+    element_bytes: u64,
+    usage: BufferUsages,
+) -> Result<u64, GpuError> {
+    let limits = gpu.device.limits();
+    let asked = count.saturating_mul(element_bytes);
+    let (limit, limit_name) = if usage.contains(BufferUsages::UNIFORM) {
+        (
+            limits.max_uniform_buffer_binding_size,
+            "max_uniform_buffer_binding_size",
+        )
+    } else if usage.contains(BufferUsages::STORAGE) {
+        (
+            limits.max_storage_buffer_binding_size,
+            "max_storage_buffer_binding_size",
+        )
+    } else {
+        (limits.max_buffer_size, "max_buffer_size")
+    };
+    if asked > limit {
+        return Err(GpuError::TooLarge {
+            what: what.to_owned(),
+            asked,
+            limit,
+            limit_name,
+        });
+    }
+    Ok(asked)
+}
+
+impl<T: Pod> Buffer<T> {
+    /// A buffer of `len` zeroed elements, at least one (a binding may not be empty). It can
+    /// always be written and read back.
+    ///
+    /// # Errors
+    /// `TooLarge`, or `Rejected` if the device is out of memory.
+    pub fn new(
+        gpu: &Gpu,
+        label: &'static str,
+        len: usize,
+        usage: BufferUsages,
+    ) -> Result<Self, GpuError> {
+        let element_bytes = size_of::<T>() as u64;
+        let bytes = checked_bytes(gpu, label, len.max(1) as u64, element_bytes, usage)?;
+        let raw = gpu.guarded(label, || {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                // Copies are in steps of four bytes.
+                size: bytes.next_multiple_of(4),
+                usage: usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            })
+        })?;
+        Ok(Self {
+            raw,
+            len,
+            label,
+            element: PhantomData,
+        })
+    }
+
+    /// A buffer with the given elements.
+    ///
+    /// # Errors
+    /// As for [`Buffer::new`].
+    pub fn with(
+        gpu: &Gpu,
+        label: &'static str,
+        elements: &[T],
+        usage: BufferUsages,
+    ) -> Result<Self, GpuError> {
+        let buffer = Self::new(gpu, label, elements.len(), usage)?;
+        buffer.write(gpu, 0, elements)?;
+        Ok(buffer)
+    }
+
+    /// Elements asked for when the buffer was made.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The whole buffer as a binding.
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
+        self.raw.as_entire_binding()
+    }
+
+    /// Writes elements from index `first` on, before the next submission.
+    ///
+    /// # Errors
+    /// `Rejected` if they do not fit.
+    pub fn write(&self, gpu: &Gpu, first: usize, elements: &[T]) -> Result<(), GpuError> {
+        if first.saturating_add(elements.len()) > self.len {
+            return Err(GpuError::Rejected {
+                what: self.label.to_owned(),
+                reason: format!(
+                    "{} elements written at {first} do not fit into {}",
+                    elements.len(),
+                    self.len
+                ),
+            });
+        }
+        if !elements.is_empty() {
+            let offset = (first * size_of::<T>()) as u64;
+            gpu.queue
+                .write_buffer(&self.raw, offset, bytemuck::cast_slice(elements));
+        }
+        Ok(())
+    }
+
+    /// Writes all `elements` from the start, into a larger buffer if this one is too small.
+    /// Returns true if the buffer was replaced, so that bind groups must be made anew.
+    ///
+    /// # Errors
+    /// As for [`Buffer::new`].
+    pub fn write_or_grow(&mut self, gpu: &Gpu, elements: &[T]) -> Result<bool, GpuError> {
+        let grow = elements.len() > self.len;
+        if grow {
+            let usage = self.raw.usage();
+            *self = Self::new(gpu, self.label, elements.len().next_power_of_two(), usage)
+                .or_else(|_| Self::new(gpu, self.label, elements.len(), usage))?;
+        }
+        self.write(gpu, 0, elements)?;
+        Ok(grow)
+    }
+
+    /// Reads the first `count` elements back. Waits for the device; for tests and headless runs.
+    ///
+    /// # Errors
+    /// `ReadBack` or the device's own errors.
+    pub fn read(&self, gpu: &Gpu, count: usize) -> Result<Vec<T>, GpuError> {
+        let count = count.min(self.len);
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        let bytes = ((count * size_of::<T>()) as u64).next_multiple_of(4);
+        let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read back"),
+            size: bytes,
+            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&self.raw, 0, &copy, 0, bytes);
+        gpu.queue.submit([encoder.finish()]);
+        let raw = read_mapped(gpu, self.label, &copy)?;
+        Ok(bytemuck::pod_collect_to_vec(&raw[..count * size_of::<T>()]))
+    }
+}
+
+/// Maps a read-back buffer, waits and copies its bytes.
+pub(crate) fn read_mapped(
+    gpu: &Gpu,
+    what: &str,
+    buffer: &wgpu::Buffer,
+) -> Result<Vec<u8>, GpuError> {
+    let failed = |reason: String| GpuError::ReadBack {
+        what: what.to_owned(),
+        reason,
+    };
+    let (send, receive) = std::sync::mpsc::channel();
+    let slice = buffer.slice(..);
+    slice.map_async(wgpu::MapMode::Read, move |result| {
+        // The receiver is gone only if the wait below failed, which is reported there.
+        let _ = send.send(result);
+    });
+    gpu.wait()?;
+    receive
+        .try_recv()
+        .map_err(|error| failed(error.to_string()))?
+        .map_err(|error| failed(error.to_string()))?;
+    let view = slice
+        .get_mapped_range()
+        .map_err(|error| failed(error.to_string()))?;
+    let bytes = view.to_vec();
+    drop(view);
+    buffer.unmap();
+    Ok(bytes)
+}
