@@ -5,9 +5,11 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use crate::base::{Real, Vec3};
 use crate::field::grid::ground_in_anchor;
-use crate::field::{Plant, TileId};
+use crate::field::{Bounds, Plant, TileId};
 
 use super::cpu::{poses, segment_length};
 use super::meadow::Meadow;
@@ -36,6 +38,8 @@ pub struct Snapshot {
     /// Depths of the nodes inside a true shape that were pushed in this sub-step, in metres; nodes
     /// pinched between body and ground not counted.
     pub depths_m: Vec<f64>,
+    /// The deepest of them relative to what its collider promises.
+    pub worst: Depth,
     /// Movable nodes of plants pushed in this sub-step.
     pub pushed_nodes: u64,
     /// Nodes that lie on the ground inside a body.
@@ -45,11 +49,28 @@ pub struct Snapshot {
     pub over_push_m: f64,
     pub max_strain: f64,
     pub max_offset_m: f64,
-    /// Values that are not finite.
+    /// Plants with a value that is not finite.
     pub not_finite: u64,
-    /// Plants in active tiles.
-    pub plants: u64,
 }
+
+/// A depth and what its collider promises: one texel of a depth cube, 1 mm for a closed form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Depth {
+    pub depth_m: f64,
+    pub limit_m: f64,
+}
+
+impl Default for Depth {
+    fn default() -> Self {
+        Self {
+            depth_m: 0.0,
+            limit_m: ANALYTIC_LIMIT_M,
+        }
+    }
+}
+
+/// Depth an analytic collider may leave, in metres.
+const ANALYTIC_LIMIT_M: f64 = 1e-3;
 
 /// One plant of an active tile as it stands.
 #[derive(Clone, Debug)]
@@ -87,49 +108,66 @@ impl<R: Real> Standing<R> {
     }
 }
 
-/// Every plant of an active tile as it stands, in the order of places.
-pub fn standing<R: Real>(meadow: &Meadow, tile: &TileWork, slab: &Slab<R>) -> Vec<Standing<R>> {
+/// A plant as it stands; `None` where nothing grows.
+fn stand<R: Real>(
+    meadow: &Meadow,
+    tile: &TileWork,
+    slab: &Slab<R>,
+    place: u32,
+) -> Option<Standing<R>> {
     let field = &meadow.field;
     let segments = field.table.segments as usize;
     let step_over_t = R::of(meadow.step_over_t());
-    let origin = field.grid.anchor_in_world(&tile.anchor, &field.ground);
-    (0..field.grid.plants_per_tile())
-        .filter_map(|place| {
-            let plant = field.plant(&tile.anchor, tile.tile, place)?;
-            let (wind, nodes) =
-                poses(field, &meadow.work, step_over_t, tile, &plant, slab, place);
-            Some(Standing {
-                plant,
-                origin,
-                wind: wind[..=segments].to_vec(),
-                nodes: nodes[..=segments].to_vec(),
-                touched_at: slab.touched_at[place as usize],
-            })
-        })
-        .collect()
+    let plant = field.plant(&tile.anchor, tile.tile, place)?;
+    let (wind, nodes) = poses(field, &meadow.work, step_over_t, tile, &plant, slab, place);
+    Some(Standing {
+        plant,
+        origin: field.grid.anchor_in_world(&tile.anchor, &field.ground),
+        wind: wind[..=segments].to_vec(),
+        nodes: nodes[..=segments].to_vec(),
+        touched_at: slab.touched_at[place as usize],
+    })
 }
 
 /// Measures every active tile.
-pub fn snapshot<R: Real>(meadow: &Meadow, state: &impl GrassState<R>) -> Snapshot {
-    let mut all = Snapshot::default();
-    for tile in &meadow.work.tiles {
-        if let Some(slab) = state.slab(tile.slab) {
-            for plant in standing(meadow, tile, slab) {
-                all.add_plant(meadow, tile, &plant);
-            }
+pub fn snapshot<R: Real>(meadow: &Meadow, state: &(impl GrassState<R> + Sync)) -> Snapshot {
+    let tiles = &meadow.work.tiles;
+    let parts: Vec<Snapshot> = tiles
+        .par_iter()
+        .filter_map(|tile| Some(of_tile(meadow, tile, state.slab(tile.slab)?)))
+        .collect();
+    parts.into_iter().fold(Snapshot::default(), Snapshot::joined)
+}
+
+fn of_tile<R: Real>(meadow: &Meadow, tile: &TileWork, slab: &Slab<R>) -> Snapshot {
+    let mut snapshot = Snapshot::default();
+    for place in 0..meadow.field.grid.plants_per_tile() {
+        if slab.touched_at[place as usize] == 0 {
+            continue;
+        }
+        if let Some(plant) = stand(meadow, tile, slab, place) {
+            snapshot.add_plant(meadow, tile, &plant);
         }
     }
-    all
+    snapshot
 }
 
 impl Snapshot {
+    fn joined(mut self, other: Self) -> Self {
+        self.depths_m.extend(other.depths_m);
+        self.worst = self.worst.worse(other.worst);
+        self.pushed_nodes += other.pushed_nodes;
+        self.pinched += other.pinched;
+        self.over_push_m = self.over_push_m.max(other.over_push_m);
+        self.max_strain = self.max_strain.max(other.max_strain);
+        self.max_offset_m = self.max_offset_m.max(other.max_offset_m);
+        self.not_finite += other.not_finite;
+        self
+    }
+
     fn add_plant<R: Real>(&mut self, meadow: &Meadow, tile: &TileWork, plant: &Standing<R>) {
-        self.plants += 1;
         if !plant.nodes.iter().all(|node| node.is_finite()) {
             self.not_finite += 1;
-            return;
-        }
-        if plant.touched_at == 0 {
             return;
         }
         let segments = plant.nodes.len() - 1;
@@ -148,28 +186,24 @@ impl Snapshot {
 
     /// Depth of a pushed plant's nodes in the parts near its tile, by their true shapes.
     fn add_pushed<R: Real>(&mut self, meadow: &Meadow, tile: &TileWork, plant: &Standing<R>) {
-        let contacts =
-            &meadow.work.contacts[tile.contacts.start as usize..tile.contacts.end as usize];
         let mut nearest = f64::NEG_INFINITY;
         for node in &plant.nodes[1..] {
             let p = Vec3::<f64>::of(node.to_f64());
             self.pushed_nodes += 1;
-            let depth_of = |p: Vec3<f64>| {
-                contacts.iter().fold(f64::NEG_INFINITY, |deepest, contact| {
-                    let part = &meadow.parts.parts[contact.part as usize];
-                    deepest.max(part.solid.depth(contact.to.inverse_point(p)))
-                })
+            let deepest = deepest_in(meadow, tile, p);
+            let Some(found) = deepest else {
+                continue;
             };
-            let depth = depth_of(p);
-            nearest = nearest.max(depth);
-            if depth <= 0.0 {
+            nearest = nearest.max(found.depth_m);
+            if found.depth_m <= 0.0 {
                 continue;
             }
             let ground: f64 = ground_in_anchor(&meadow.field.ground, &tile.anchor, p.x, p.z);
             if p.y <= ground + ON_GROUND_M {
                 self.pinched += 1;
             } else {
-                self.depths_m.push(depth);
+                self.depths_m.push(found.depth_m);
+                self.worst = self.worst.worse(found);
             }
         }
         if nearest.is_finite() {
@@ -178,22 +212,61 @@ impl Snapshot {
     }
 }
 
-/// Plants near a place on the ground: those of active tiles as they stand. `None` where no tile
-/// near the place is active.
+impl Depth {
+    fn worse(self, other: Self) -> Self {
+        if other.depth_m / other.limit_m > self.depth_m / self.limit_m {
+            other
+        } else {
+            self
+        }
+    }
+}
+
+/// The part a point is deepest in among those near a tile, by true shapes; a negative depth is
+/// how far off the nearest one is.
+fn deepest_in(meadow: &Meadow, tile: &TileWork, p: Vec3<f64>) -> Option<Depth> {
+    let contacts = &meadow.work.contacts[tile.contacts.start as usize..tile.contacts.end as usize];
+    let depths = contacts.iter().map(|contact| {
+        let part = &meadow.parts.parts[contact.part as usize];
+        let cube = part.cube.as_ref().filter(|_| contact.uses_cube);
+        Depth {
+            depth_m: part.solid.depth(contact.to.inverse_point(p)),
+            limit_m: cube.map_or(ANALYTIC_LIMIT_M, |cube| f64::from(cube.texel_m())),
+        }
+    });
+    depths.reduce(|a, b| if b.depth_m > a.depth_m { b } else { a })
+}
+
+/// Plants rooted near a place on the ground, resting ones included.
 pub fn near<R: Real>(
     meadow: &Meadow,
     state: &impl GrassState<R>,
     place_m: [f64; 2],
     within_m: f64,
 ) -> Vec<Standing<R>> {
+    let field = &meadow.field;
+    let segments = field.table.segments as usize;
+    let untouched = Slab::new(field.grid.plants_per_tile() as usize, segments);
+    let disc = Bounds {
+        low: [place_m[0] - within_m, f64::MIN, place_m[1] - within_m],
+        high: [place_m[0] + within_m, f64::MAX, place_m[1] + within_m],
+    };
+    let mut tiles = Vec::new();
+    let (grid, ground) = (&field.grid, &field.ground);
+    field.octree.query(grid, ground, &disc, 0.0, |tile| tiles.push(tile));
     let mut found = Vec::new();
-    for tile in &meadow.work.tiles {
-        let [low, high] = meadow.field.grid.tile_bounds(tile.tile, &meadow.field.ground);
-        let far = (0..2).any(|a| place_m[a] < low[a] - within_m || place_m[a] > high[a] + within_m);
-        let Some(slab) = state.slab(tile.slab).filter(|_| !far) else {
-            continue;
+    for tile in tiles {
+        let active = meadow.tiles.get(tile);
+        let slab = active.and_then(|a| state.slab(a.slab)).unwrap_or(&untouched);
+        let work = TileWork {
+            tile,
+            slab: active.map_or(0, |a| a.slab),
+            anchor: grid.anchor_of(tile, ground),
+            contacts: 0..0,
         };
-        found.extend(standing(meadow, tile, slab).into_iter().filter(|plant| {
+        let plants = 0..grid.plants_per_tile();
+        let plants = plants.filter_map(|place| stand(meadow, &work, slab, place));
+        found.extend(plants.filter(|plant| {
             let [x, z] = plant.root_in_world();
             (x - place_m[0]).powi(2) + (z - place_m[1]).powi(2) <= within_m * within_m
         }));

@@ -1,9 +1,20 @@
+//! The passes as Rust, generic over the float, and the tick that runs them.
+
 pub mod collide;
 pub mod contact;
+pub mod cpu;
 pub mod depth_cube;
+pub mod meadow;
+pub mod measure;
 pub mod parts;
 pub mod recover;
 pub mod relax;
 pub mod slab;
 pub mod solid;
+pub mod tick;
 pub mod work;
+
+pub use cpu::Grass;
+pub use meadow::{Meadow, MeadowError};
+pub use tick::tick;
+pub use work::Work;

@@ -1,0 +1,13 @@
+//! Running scenes: the clock, what is measured, what is judged, reports and benches.
+
+pub mod engine;
+pub mod judge;
+pub mod scenario;
+pub mod swept;
+pub mod timeline;
+pub mod watch;
+
+pub use engine::{Engine, EngineChoice};
+pub use judge::Verdict;
+pub use scenario::{Outcome, RunError, RunOptions, run_scene};
+pub use timeline::Timeline;

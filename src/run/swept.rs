@@ -1,0 +1,84 @@
+//! Which plants a body has gone through: the truth an imprint is compared with.
+//!
+//! A plant counts as swept if its undisturbed centre line (nodes and midpoints of its wind pose)
+//! was inside the body's true shape in some piece of some sub-step. Pieces are twice as fine as the
+//! engine's own sweeps, so that a body that jumps over plants is caught.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rayon::prelude::*;
+
+use crate::base::{Real, Vec3};
+use crate::field::{TileId, wind_pose};
+use crate::sim::Meadow;
+use crate::sim::work::{Contact, TileWork};
+
+/// Plants swept by one body, with the tick of the last time.
+#[derive(Clone, Debug, Default)]
+pub struct Swept {
+    plants: BTreeMap<(TileId, u32), u32>,
+}
+
+impl Swept {
+    /// Takes in one sub-step of body `body`.
+    pub fn tick(&mut self, meadow: &Meadow, body: u32) {
+        let found: Vec<Vec<(TileId, u32)>> = meadow
+            .work
+            .tiles
+            .par_iter()
+            .map(|tile| swept_in(meadow, tile, body))
+            .collect();
+        for plant in found.into_iter().flatten() {
+            self.plants.insert(plant, meadow.ticks);
+        }
+    }
+
+    /// The plants swept within the last `ticks` ticks.
+    pub fn since(&self, now: u32, ticks: u32) -> BTreeSet<(TileId, u32)> {
+        let recent = self.plants.iter().filter(|&(_, &at)| now - at < ticks);
+        recent.map(|(&plant, _)| plant).collect()
+    }
+}
+
+fn swept_in(meadow: &Meadow, tile: &TileWork, body: u32) -> Vec<(TileId, u32)> {
+    let contacts = &meadow.work.contacts[tile.contacts.start as usize..tile.contacts.end as usize];
+    let contacts: Vec<&Contact> = contacts.iter().filter(|c| c.body == body).collect();
+    if contacts.is_empty() {
+        return Vec::new();
+    }
+    let field = &meadow.field;
+    let segments = field.table.segments as usize;
+    let mut found = Vec::new();
+    for place in 0..field.grid.plants_per_tile() {
+        let Some(plant) = field.plant(&tile.anchor, tile.tile, place) else {
+            continue;
+        };
+        let root = Vec3::<f64>::of_f32(plant.root_in_anchor);
+        let near = |contact: &&&Contact| {
+            let reach = contact.radius_m + f64::from(plant.height_m);
+            let way = contact.to.place - contact.from.place;
+            let middle = (contact.to.place + contact.from.place) * 0.5;
+            (root - middle).length() <= reach + 0.5 * way.length()
+        };
+        if !contacts.iter().any(|c| near(&c)) {
+            continue;
+        }
+        let bend = meadow.work.wind.bend::<f64>(&tile.anchor, &plant);
+        let line = wind_pose(&plant, &field.table, bend);
+        let inside = contacts.iter().filter(near).any(|contact| {
+            (1..=2 * contact.sweeps).any(|piece| {
+                let share = f64::from(piece) / f64::from(2 * contact.sweeps);
+                let pose = contact.from.lerp(contact.to, share);
+                let solid = &meadow.parts.parts[contact.part as usize].solid;
+                let holds = |p: Vec3<f64>| solid.depth(pose.inverse_point(p)) > 0.0;
+                (0..segments).any(|j| {
+                    holds(line[j + 1]) || holds((line[j] + line[j + 1]) * f64::of(0.5))
+                })
+            })
+        });
+        if inside {
+            found.push((tile.tile, place));
+        }
+    }
+    found
+}
