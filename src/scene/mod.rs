@@ -6,21 +6,36 @@
 
 pub mod assets;
 mod body;
+pub mod budget;
+pub mod builtin;
 mod camera;
+mod error;
 mod expect;
+mod extent;
 mod grass;
+pub mod limits;
+mod load;
+mod positions;
+mod schema;
 mod script;
 mod solver;
+mod syntax;
 mod terrain;
+mod validate;
 mod wind;
 
 pub use body::{Body, Collider, Mass, Motion, Part, Shape, Waypoint};
 pub use camera::Camera;
+pub use error::{AssetError, Problem, SceneError};
 pub use expect::Expectation;
 pub use grass::{Grass, Species};
+pub use load::{LoadedScene, load_scene, parse_scene, parse_scene_with, scene_files, to_ron};
+pub use positions::Position;
+pub use schema::json_schema;
 pub use script::{Action, Event};
 pub use solver::{PhiloxRounds, Root, Solver};
 pub use terrain::{Ground, Terrain};
+pub use validate::{Invalid, validate, validate_assets};
 pub use wind::Wind;
 
 use schemars::JsonSchema;

@@ -54,3 +54,17 @@ pub enum Action {
     /// Replaces the wind.
     SetWind(Wind),
 }
+
+impl Action {
+    /// The name of the body an action needs to be there; `None` for spawning and for the wind.
+    pub fn body(&self) -> Option<&str> {
+        match self {
+            Self::Spawn(_) | Self::SetWind(_) => None,
+            Self::Remove { body }
+            | Self::Teleport { body, .. }
+            | Self::Throw { body, .. }
+            | Self::Impulse { body, .. }
+            | Self::Drive { body, .. } => Some(body),
+        }
+    }
+}
