@@ -129,6 +129,11 @@ impl Bodies {
         self.library.shapes()
     }
 
+    /// The id of a name that the scene knows, or that was dropped since.
+    pub fn id_of(&self, name: &str) -> Option<u32> {
+        self.ids.get(name).copied()
+    }
+
     /// Every body in the world, by name.
     pub fn info(&self) -> impl Iterator<Item = BodyInfo<'_>> {
         self.actors.iter().filter_map(|(name, actor)| {

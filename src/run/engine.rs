@@ -1,5 +1,8 @@
 //! The engines behind one face: what a run, a picture or a window asks of the grass.
 
+use std::collections::BTreeSet;
+
+use crate::field::TileId;
 use crate::sim::measure::{self, Snapshot, Standing};
 use crate::sim::{Grass, Meadow, MeadowError};
 
@@ -44,9 +47,21 @@ impl Engine {
     }
 
     /// The plants rooted near a place.
-    pub fn near(&mut self, meadow: &Meadow, place_m: [f64; 2], within_m: f64) -> Vec<Standing<f32>> {
+    pub fn near(
+        &mut self,
+        meadow: &Meadow,
+        place_m: [f64; 2],
+        within_m: f64,
+    ) -> Vec<Standing<f32>> {
         match self {
             Self::Cpu(grass) => measure::near(meadow, grass, place_m, within_m),
+        }
+    }
+
+    /// Plants touched within the last `ticks` ticks that stand at least `far_m` off.
+    pub fn bent(&mut self, meadow: &Meadow, ticks: u32, far_m: f64) -> BTreeSet<(TileId, u32)> {
+        match self {
+            Self::Cpu(grass) => measure::bent(meadow, grass, ticks, far_m),
         }
     }
 

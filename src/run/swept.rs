@@ -1,7 +1,7 @@
 //! Which plants a body has gone through: the truth an imprint is compared with.
 //!
 //! A plant counts as swept if its undisturbed centre line (nodes and midpoints of its wind pose)
-//! was inside the body's true shape in some piece of some sub-step. Pieces are twice as fine as the
+//! was more than [`BENT_M`] inside the body's true shape in some piece of some sub-step. Pieces are twice as fine as the
 //! engine's own sweeps, so that a body that jumps over plants is caught.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,6 +12,10 @@ use crate::base::{Real, Vec3};
 use crate::field::{TileId, wind_pose};
 use crate::sim::Meadow;
 use crate::sim::work::{Contact, TileWork};
+
+/// Depth in a body from which a plant counts as swept, and distance from the wind pose from which
+/// it counts as bent, in metres: the skin's, which a body pushes grass by without touching it.
+pub const BENT_M: f64 = 0.001;
 
 /// Plants swept by one body, with the tick of the last time.
 #[derive(Clone, Debug, Default)]
@@ -70,10 +74,9 @@ fn swept_in(meadow: &Meadow, tile: &TileWork, body: u32) -> Vec<(TileId, u32)> {
                 let share = f64::from(piece) / f64::from(2 * contact.sweeps);
                 let pose = contact.from.lerp(contact.to, share);
                 let solid = &meadow.parts.parts[contact.part as usize].solid;
-                let holds = |p: Vec3<f64>| solid.depth(pose.inverse_point(p)) > 0.0;
-                (0..segments).any(|j| {
-                    holds(line[j + 1]) || holds((line[j] + line[j + 1]) * f64::of(0.5))
-                })
+                let holds = |p: Vec3<f64>| solid.depth(pose.inverse_point(p)) > BENT_M;
+                (0..segments)
+                    .any(|j| holds(line[j + 1]) || holds((line[j] + line[j + 1]) * f64::of(0.5)))
             })
         });
         if inside {

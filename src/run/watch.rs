@@ -94,7 +94,10 @@ impl Watch {
         }
         let Some(place_m) = meadow.work.tiles.iter().find_map(|tile| {
             let recovering = tile.contacts.is_empty();
-            let [low, high] = meadow.field.grid.tile_bounds(tile.tile, &meadow.field.ground);
+            let [low, high] = meadow
+                .field
+                .grid
+                .tile_bounds(tile.tile, &meadow.field.ground);
             recovering.then(|| [0, 1].map(|a| 0.5 * (low[a] + high[a])))
         }) else {
             return;

@@ -4,7 +4,7 @@
 //! are the numbers that would have been allocated.
 
 use super::limits::{HEIGHT_SAMPLES, PLANTS, PLANTS_PER_TILE, SEEDING_TRIANGLES, TILES};
-use super::{Ground, Grass, Solver};
+use super::{Grass, Ground, Solver};
 
 /// Counts that follow from ground, grass and solver settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,9 +67,10 @@ pub fn tile_cells(wished_tile_m: f32, cell_m: f64) -> Option<u32> {
 /// file says so.
 pub fn ground_samples(ground: &Ground) -> Option<[u64; 2]> {
     match ground {
-        Ground::Flat { size_m, spacing_m } | Ground::Rolling { size_m, spacing_m, .. } => {
-            Some(size_m.map(|s| squares_along(s, *spacing_m) + 1))
-        }
+        Ground::Flat { size_m, spacing_m }
+        | Ground::Rolling {
+            size_m, spacing_m, ..
+        } => Some(size_m.map(|s| squares_along(s, *spacing_m) + 1)),
         Ground::HeightMap { .. } => None,
     }
 }
@@ -104,7 +105,13 @@ pub fn field_size(
     let sampled = product(samples[0], samples[1]);
     within(sampled, HEIGHT_SAMPLES).ok_or_else(|| {
         let hint = "make the ground smaller or its spacing_m larger";
-        over("terrain.ground", text(sampled), "height samples", HEIGHT_SAMPLES, hint)
+        over(
+            "terrain.ground",
+            text(sampled),
+            "height samples",
+            HEIGHT_SAMPLES,
+            hint,
+        )
     })?;
 
     let spacing = spacing_m(ground);
@@ -115,7 +122,13 @@ pub fn field_size(
     let triangles = within(triangles, SEEDING_TRIANGLES).ok_or_else(|| {
         let hint = "make the ground smaller or seeding_cell_m larger";
         let count = text(triangles);
-        over("solver.seeding_cell_m", count, "seeding triangles", SEEDING_TRIANGLES, hint)
+        over(
+            "solver.seeding_cell_m",
+            count,
+            "seeding triangles",
+            SEEDING_TRIANGLES,
+            hint,
+        )
     })?;
 
     let tile_cells = tile_cells(solver.tile_m, cell_m).ok_or_else(|| OverBudget {
@@ -130,11 +143,21 @@ pub fn field_size(
     let [x, z] = cells.map(|n| n.div_ceil(tile_cells.into()));
     let tiles = product(x, z);
     let tiles = within(tiles, TILES).ok_or_else(|| {
-        over("solver.tile_m", text(tiles), "tiles", TILES, "make the ground smaller or tile_m larger")
+        over(
+            "solver.tile_m",
+            text(tiles),
+            "tiles",
+            TILES,
+            "make the ground smaller or tile_m larger",
+        )
     })?;
 
     let grows = !grass.species.is_empty();
-    let density = if grows { f64::from(grass.density_per_m2) } else { 0.0 };
+    let density = if grows {
+        f64::from(grass.density_per_m2)
+    } else {
+        0.0
+    };
     let per_triangle = density * cell_m * cell_m / 2.0;
     // A triangle rounds its number of plants up or down by chance.
     let most = per_triangle.ceil() as u64;
@@ -142,13 +165,25 @@ pub fn field_size(
     let per_tile = within(per_tile, PLANTS_PER_TILE).ok_or_else(|| {
         let hint = "lower density_per_m2 or solver.tile_m";
         let count = text(per_tile);
-        over("grass.density_per_m2", count, "plants in a tile", PLANTS_PER_TILE, hint)
+        over(
+            "grass.density_per_m2",
+            count,
+            "plants in a tile",
+            PLANTS_PER_TILE,
+            hint,
+        )
     })?;
     // Below 2³² · 2¹⁶, so the float holds it to the last plant in a million.
     let plants = (per_triangle * triangles as f64).ceil() as u64;
     if plants > PLANTS {
         let hint = "lower density_per_m2 or make the ground smaller";
-        return Err(over("grass.density_per_m2", plants.to_string(), "plants", PLANTS, hint));
+        return Err(over(
+            "grass.density_per_m2",
+            plants.to_string(),
+            "plants",
+            PLANTS,
+            hint,
+        ));
     }
     Ok(FieldSize {
         samples,
@@ -177,7 +212,11 @@ mod tests {
 
     #[test]
     fn a_million_blades_on_4096_tiles() {
-        let size = size_of(&flat([64.0, 64.0], 1.0), &Grass::default(), &Solver::default());
+        let size = size_of(
+            &flat([64.0, 64.0], 1.0),
+            &Grass::default(),
+            &Solver::default(),
+        );
         let size = size.expect("within budget");
         assert_eq!(size.samples, [65, 65]);
         assert_eq!(size.seeding_triangles, 128 * 128 * 2);
@@ -187,7 +226,13 @@ mod tests {
 
     #[test]
     fn decimals_do_not_add_a_square() {
-        for (size, spacing, squares) in [(24.0, 0.1, 240), (7.0, 0.7, 10), (24.0, 0.3, 80), (0.5, 1.0, 1), (2.1, 1.0, 3)] {
+        for (size, spacing, squares) in [
+            (24.0, 0.1, 240),
+            (7.0, 0.7, 10),
+            (24.0, 0.3, 80),
+            (0.5, 1.0, 1),
+            (2.1, 1.0, 3),
+        ] {
             assert_eq!(squares_along(size, spacing), squares, "{size} / {spacing}");
         }
     }
@@ -213,17 +258,43 @@ mod tests {
             format!("{}: {}", over.key, over.what)
         };
         let text = what(&flat([100_000.0, 100_000.0], 1.0), &grass, &solver);
-        assert!(text.contains("10000200001 height samples") && text.contains("67108864"), "{text}");
-        let fine = Solver { seeding_cell_m: 0.05, tile_m: 0.2, ..Solver::default() };
+        assert!(
+            text.contains("10000200001 height samples") && text.contains("67108864"),
+            "{text}"
+        );
+        let fine = Solver {
+            seeding_cell_m: 0.05,
+            tile_m: 0.2,
+            ..Solver::default()
+        };
         let text = what(&flat([8000.0, 8000.0], 10.0), &grass, &fine);
-        assert!(text.starts_with("solver.seeding_cell_m") && text.contains("4294967296"), "{text}");
+        assert!(
+            text.starts_with("solver.seeding_cell_m") && text.contains("4294967296"),
+            "{text}"
+        );
         let text = what(&flat([8000.0, 8000.0], 1.0), &grass, &solver);
-        assert!(text.contains("64000000 tiles") && text.contains("16777216"), "{text}");
-        let dense = Grass { density_per_m2: 10_000.0, ..Grass::default() };
-        let wide = Solver { seeding_cell_m: 2.0, tile_m: 8.0, ..Solver::default() };
+        assert!(
+            text.contains("64000000 tiles") && text.contains("16777216"),
+            "{text}"
+        );
+        let dense = Grass {
+            density_per_m2: 10_000.0,
+            ..Grass::default()
+        };
+        let wide = Solver {
+            seeding_cell_m: 2.0,
+            tile_m: 8.0,
+            ..Solver::default()
+        };
         let text = what(&flat([100.0, 100.0], 2.0), &dense, &wide);
-        assert!(text.contains("640000 plants in a tile") && text.contains("65536"), "{text}");
-        let many = Grass { density_per_m2: 2000.0, ..Grass::default() };
+        assert!(
+            text.contains("640000 plants in a tile") && text.contains("65536"),
+            "{text}"
+        );
+        let many = Grass {
+            density_per_m2: 2000.0,
+            ..Grass::default()
+        };
         let text = what(&flat([3000.0, 3000.0], 1.0), &many, &solver);
         assert!(text.contains("18000000000 plants"), "{text}");
         let text = what(&flat([8.0, 8.0], 0.1), &grass, &solver);
@@ -232,7 +303,10 @@ mod tests {
 
     #[test]
     fn no_species_no_plants() {
-        let bare = Grass { species: Vec::new(), ..Grass::default() };
+        let bare = Grass {
+            species: Vec::new(),
+            ..Grass::default()
+        };
         let size = size_of(&flat([64.0, 64.0], 1.0), &bare, &Solver::default());
         assert_eq!(size.map(|s| (s.plants, s.plants_per_tile)), Ok((0, 0)));
     }

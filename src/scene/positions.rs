@@ -275,7 +275,10 @@ impl Scanner<'_> {
         if let Some((count, true)) = hashes {
             self.at += bytes_before + 1 + count + 1;
             let end = format!("\"{}", "#".repeat(count));
-            self.at += self.rest().find(&end).map_or(self.rest().len(), |i| i + end.len());
+            self.at += self
+                .rest()
+                .find(&end)
+                .map_or(self.rest().len(), |i| i + end.len());
             return true;
         }
         let Some(quote) = prefix.chars().next().filter(|c| matches!(c, '"' | '\'')) else {
@@ -448,7 +451,15 @@ mod tests {
 
     #[test]
     fn broken_text_keeps_what_was_understood() {
-        for source in ["(a: (b: [1, 2", "(a: \"never closed", "(a: /* open", "(a 1 b: 2)", "", ")", "(a: ])"] {
+        for source in [
+            "(a: (b: [1, 2",
+            "(a: \"never closed",
+            "(a: /* open",
+            "(a 1 b: 2)",
+            "",
+            ")",
+            "(a: ])",
+        ] {
             let positions = Positions::scan(source);
             for offset in 0..=source.len() {
                 positions.around(offset);

@@ -6,7 +6,7 @@ use crate::base::{Pose, Real, Vec3};
 
 use super::depth_cube::DepthCube;
 use super::parts::Part;
-use super::solid::{NO_FACE, Solid};
+use super::solid::{Exit, NO_FACE, Solid};
 use super::work::Contact;
 
 /// One part near a tile, ready for its vertices.
@@ -74,10 +74,11 @@ impl<'a, R: Real> Touch<'a, R> {
         }
     }
 
-    /// Moves a vertex out of the part at `pose`. `memory` is the vertex's word about the face it
-    /// left through; it is kept up to date. Returns whether the vertex was inside.
-    pub fn push_out(&self, pose: &Pose<R>, vertex: &mut Vec3<R>, memory: &mut u32) -> bool {
-        let p = pose.inverse_point(*vertex);
+    /// The way out for a vertex inside the part at `pose`, with its normal turned into the anchor's
+    /// coordinates. `memory` is the vertex's word about the face it left through last; it is kept
+    /// up to date.
+    pub fn exit(&self, pose: &Pose<R>, vertex: Vec3<R>, memory: &mut u32) -> Option<Exit<R>> {
+        let p = pose.inverse_point(vertex);
         let kept = if *memory & !FACE_MASK == self.key && *memory & FACE_MASK != 0 {
             (*memory & FACE_MASK) - 1
         } else {
@@ -86,13 +87,12 @@ impl<'a, R: Real> Touch<'a, R> {
         let exit = match self.collider {
             ColliderOf::Cube(cube) => cube.exit(p, kept),
             ColliderOf::Analytic(solid) => solid.exit(p, kept),
-        };
-        let Some(exit) = exit else {
-            return false;
-        };
-        *vertex += pose.turn.rotate(exit.normal) * exit.depth;
+        }?;
         *memory = self.key | ((exit.face + 1) & FACE_MASK);
-        true
+        Some(Exit {
+            normal: pose.turn.rotate(exit.normal),
+            ..exit
+        })
     }
 }
 

@@ -17,7 +17,7 @@
 
 use crate::base::{Real, Vec3, vec3};
 
-use super::solid::{Exit, KEEP_FACE, NO_FACE, Plane, Solid};
+use super::solid::{Exit, KEEP_FACE, Plane, Solid};
 
 /// Set where a texel's ray met the part.
 pub const HIT: u32 = 1 << 31;
@@ -339,6 +339,7 @@ fn unpack_normal<R: Real>(word: u32) -> Vec3<R> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::solid::NO_FACE;
     use super::*;
 
     fn random(k: u32) -> Vec3<f32> {

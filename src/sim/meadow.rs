@@ -135,7 +135,11 @@ impl Meadow {
     pub fn script(&mut self) -> Result<(), MeadowError> {
         // Half a nanosecond forgives the rounding of ticks · Δt.
         let now = self.time_s() + 5e-10;
-        while self.script.get(self.scripted).is_some_and(|e| e.at_s <= now) {
+        while self
+            .script
+            .get(self.scripted)
+            .is_some_and(|e| e.at_s <= now)
+        {
             let action = self.script[self.scripted].action.clone();
             self.scripted += 1;
             self.act(&action)?;
@@ -229,10 +233,11 @@ impl Meadow {
     fn count(&mut self) {
         let plants = u64::from(self.field.grid.plants_per_tile());
         let active = self.tiles.len() as u64;
+        let bytes = self.state_bytes();
         let counters = &mut self.counters;
         counters.refused_tiles = self.tiles.slabs.refused;
         counters.plants_peak = counters.plants_peak.max(active * plants);
-        counters.state_bytes_peak = counters.state_bytes_peak.max(self.state_bytes());
+        counters.state_bytes_peak = counters.state_bytes_peak.max(bytes);
     }
 
     /// Bytes of grass state in use now.
@@ -258,10 +263,10 @@ impl Meadow {
         let resolution = self.scene.solver.cube_resolution;
         let mut found: BTreeMap<String, (u32, u32)> = BTreeMap::new();
         for link in self.bodies.links() {
-            let Some(name) = self.bodies.name_of(link.body) else {
+            let Some(info) = self.bodies.info().find(|info| info.id == link.body) else {
                 continue;
             };
-            let entry = found.entry(name.to_owned()).or_default();
+            let entry = found.entry(info.name.to_owned()).or_default();
             for part in self.parts.of_shape(link.shape) {
                 if self.parts.resolves_to_cube(part, link.collider, resolution) {
                     entry.0 += 1;

@@ -3,7 +3,7 @@
 //! Everything is computed in `f64` from the state that an engine hands out, against the bodies'
 //! true shapes, whatever the engine itself collided with.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
@@ -129,6 +129,14 @@ fn stand<R: Real>(
     })
 }
 
+/// Every plant of an active tile as it stands, in the order of places.
+pub fn standing<R: Real>(meadow: &Meadow, tile: &TileWork, slab: &Slab<R>) -> Vec<Standing<R>> {
+    let plants = 0..meadow.field.grid.plants_per_tile();
+    plants
+        .filter_map(|place| stand(meadow, tile, slab, place))
+        .collect()
+}
+
 /// Measures every active tile.
 pub fn snapshot<R: Real>(meadow: &Meadow, state: &(impl GrassState<R> + Sync)) -> Snapshot {
     let tiles = &meadow.work.tiles;
@@ -136,7 +144,9 @@ pub fn snapshot<R: Real>(meadow: &Meadow, state: &(impl GrassState<R> + Sync)) -
         .par_iter()
         .filter_map(|tile| Some(of_tile(meadow, tile, state.slab(tile.slab)?)))
         .collect();
-    parts.into_iter().fold(Snapshot::default(), Snapshot::joined)
+    parts
+        .into_iter()
+        .fold(Snapshot::default(), Snapshot::joined)
 }
 
 fn of_tile<R: Real>(meadow: &Meadow, tile: &TileWork, slab: &Slab<R>) -> Snapshot {
@@ -253,11 +263,15 @@ pub fn near<R: Real>(
     };
     let mut tiles = Vec::new();
     let (grid, ground) = (&field.grid, &field.ground);
-    field.octree.query(grid, ground, &disc, 0.0, |tile| tiles.push(tile));
+    field
+        .octree
+        .query(grid, ground, &disc, 0.0, |tile| tiles.push(tile));
     let mut found = Vec::new();
     for tile in tiles {
         let active = meadow.tiles.get(tile);
-        let slab = active.and_then(|a| state.slab(a.slab)).unwrap_or(&untouched);
+        let slab = active
+            .and_then(|a| state.slab(a.slab))
+            .unwrap_or(&untouched);
         let work = TileWork {
             tile,
             slab: active.map_or(0, |a| a.slab),
@@ -270,6 +284,34 @@ pub fn near<R: Real>(
             let [x, z] = plant.root_in_world();
             (x - place_m[0]).powi(2) + (z - place_m[1]).powi(2) <= within_m * within_m
         }));
+    }
+    found
+}
+
+/// Plants touched within the last `ticks` ticks whose last contact took a node at least `far_m`
+/// from its wind pose.
+pub fn bent<R: Real>(
+    meadow: &Meadow,
+    state: &impl GrassState<R>,
+    ticks: u32,
+    far_m: f64,
+) -> BTreeSet<(TileId, u32)> {
+    let mut found = BTreeSet::new();
+    for tile in &meadow.work.tiles {
+        let Some(slab) = state.slab(tile.slab) else {
+            continue;
+        };
+        for place in 0..meadow.field.grid.plants_per_tile() {
+            let at = slab.touched_at[place as usize];
+            if at == 0 || meadow.ticks - at >= ticks {
+                continue;
+            }
+            let segments = meadow.field.table.segments as usize;
+            let offsets = &slab.offsets[place as usize * segments..][..segments];
+            if offsets.iter().any(|d| d.length().to_f64() >= far_m) {
+                found.insert((tile.tile, place));
+            }
+        }
     }
     found
 }

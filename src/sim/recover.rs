@@ -8,7 +8,9 @@
 //! ```
 //!
 //! Nothing is written back, so the curve is the same at every rate; at t = 0 the wind pose
-//! itself is returned, bit for bit. WGSL twin: `shaders/recover.wgsl`, `shaders/shared/pose.wgsl`.
+//! itself is returned, bit for bit. In the very tick of a contact (t = 1) the pose is the one the
+//! contact left: within the strain limit, and outside the body, which a restored length might
+//! enter again. WGSL twin: `shaders/recover.wgsl`, `shaders/shared/pose.wgsl`.
 
 use crate::base::Real;
 use crate::field::Nodes;
@@ -46,7 +48,9 @@ pub fn recovering_pose<R: Real>(
     for (node, &offset) in nodes[1..].iter_mut().zip(offsets) {
         *node += offset * left;
     }
-    restore_lengths(&mut nodes, wind, offsets.len(), length);
+    if age > 0 {
+        restore_lengths(&mut nodes, wind, offsets.len(), length);
+    }
     nodes
 }
 
@@ -91,7 +95,7 @@ mod tests {
                 .map(|j| vec3(a.sin(), a.cos(), 0.0) * (0.05 * f64::from(j)))
                 .collect();
             let offsets: Vec<_> = bent.iter().zip(&wind[1..]).map(|(&b, &w)| b - w).collect();
-            for age in 0..=240 {
+            for age in 1..=240 {
                 let nodes = recovering_pose(&wind, &offsets, age, 1.0 / 240.0, 0.05);
                 for j in 0..8 {
                     let length = (nodes[j + 1] - nodes[j]).length();

@@ -1,6 +1,6 @@
 //! Relax: what a touched plant does within one sub-step.
 //!
-//! Push out, then (springs and lengths, push out, ground) until no segment is strained by more
+//! Push out, then (springs and lengths along the ground, push out, ground) until no segment is strained by more
 //! than the limit, at least and at most as often as the solver says; the ground wins over the
 //! body. The sub-step is cut into sweeps, so that no body crosses more than half its half
 //! thickness at once.
@@ -11,12 +11,12 @@
 //! which is the same at any Δt, instead of k·Δt, which is not. Springs act only on plants pushed in
 //! this sub-step. WGSL twin: `shaders/relax.wgsl`.
 
-use crate::base::{Real, Vec3};
+use crate::base::{Pose, Real, Vec3, vec3};
+use crate::field::grid::ground_in_anchor;
 use crate::field::{Anchor, Nodes};
 use crate::terrain::HeightGrid;
 
 use super::contact::Touch;
-use super::recover::restore_lengths;
 
 /// What the kernel needs besides the plant.
 #[derive(Clone, Copy, Debug)]
@@ -61,6 +61,12 @@ pub fn sweeps_for<R: Real>(touches: &[Touch<R>], root: Vec3<R>, reach: R) -> u32
         .unwrap_or(0)
 }
 
+/// The bodies around a plant at one instant of a sub-step.
+struct Bodies<'a, R> {
+    /// Touches that reach the plant, with their `anchor_from_part` of this instant.
+    posed: Vec<(&'a Touch<'a, R>, Pose<R>)>,
+}
+
 /// Runs one sub-step for a plant. `nodes` and the nodes' `faces` are changed in place. Returns the
 /// largest number of rounds a sweep took; 0 means that nothing touched the plant.
 pub fn respond<R: Real>(
@@ -75,13 +81,16 @@ pub fn respond<R: Real>(
     let mut rounds_used = 0;
     for sweep in 1..=sweeps {
         let share = R::of(f64::from(sweep)) / R::of(f64::from(sweeps));
-        if !push_out_all(nodes, faces, touches, share, reach, place.segments) {
+        let bodies = Bodies::at(touches, share, nodes[0], reach);
+        let mut pushed = bodies.push_out(nodes, faces);
+        if pushed == 0 {
             continue;
         }
         for round in 1..=settings.most_rounds {
             bend_springs(nodes, place, settings.bend);
-            restore_lengths(nodes, place.wind, place.segments, place.length);
-            push_out_all(nodes, faces, touches, share, reach, place.segments);
+            follow_pushed(nodes, pushed, place);
+            lay_out(nodes, faces, &bodies, place);
+            pushed = bodies.push_out(nodes, faces);
             keep_above_ground(nodes, place);
             rounds_used = rounds_used.max(round);
             let strain = largest_strain(nodes, place.segments, place.length);
@@ -93,26 +102,71 @@ pub fn respond<R: Real>(
     rounds_used
 }
 
-/// Pushes every node out of every part that reaches the plant, parts in their order.
-fn push_out_all<R: Real>(
-    nodes: &mut Nodes<R>,
-    faces: &mut [u32],
-    touches: &[Touch<R>],
-    share: R,
-    reach: R,
-    segments: usize,
-) -> bool {
-    let mut pushed = false;
-    for touch in touches {
-        if !touch.reaches(nodes[0], reach) {
-            continue;
-        }
-        let pose = touch.from.lerp(touch.to, share);
-        for j in 0..segments {
-            pushed |= touch.push_out(&pose, &mut nodes[j + 1], &mut faces[j]);
+impl<'a, R: Real> Bodies<'a, R> {
+    fn at(touches: &'a [Touch<'a, R>], share: R, root: Vec3<R>, reach: R) -> Self {
+        let near = touches.iter().filter(|touch| touch.reaches(root, reach));
+        Self {
+            posed: near
+                .map(|touch| (touch, touch.from.lerp(touch.to, share)))
+                .collect(),
         }
     }
-    pushed
+
+    /// Pushes every node out of every part, parts in their order. Returns a bit per node that was
+    /// inside one.
+    fn push_out(&self, nodes: &mut Nodes<R>, faces: &mut [u32]) -> u32 {
+        let mut pushed = 0;
+        for (touch, pose) in &self.posed {
+            for (j, face) in faces.iter_mut().enumerate() {
+                if let Some(exit) = touch.exit(pose, nodes[j + 1], face) {
+                    nodes[j + 1] += exit.normal * exit.depth;
+                    pushed |= 1 << (j + 1);
+                }
+            }
+        }
+        pushed
+    }
+
+    /// Turns a segment about its lower node until its upper one is out of every part, where its
+    /// length allows that: both constraints hold after one step, which pushing and restoring
+    /// lengths in turn reaches slowly where a blade meets a body head on.
+    fn turn_out(
+        &self,
+        from: Vec3<R>,
+        to: Vec3<R>,
+        rest: Vec3<R>,
+        length: R,
+        face: &mut u32,
+    ) -> Vec3<R> {
+        let mut to = to;
+        for (touch, pose) in &self.posed {
+            let Some(exit) = touch.exit(pose, to, face) else {
+                continue;
+            };
+            let n = exit.normal;
+            let along = (to - from).dot(n);
+            let rise = along + exit.depth;
+            let run = length * length - rise * rise;
+            to = if run > R::ZERO {
+                let sideways = (rest - n * rest.dot(n)).unit_or(across(n));
+                let flat = ((to - from) - n * along).unit_or(sideways);
+                from + n * rise + flat * run.sqrt()
+            } else {
+                to + n * exit.depth
+            };
+        }
+        to
+    }
+}
+
+/// Some unit vector at right angles to a unit vector.
+fn across<R: Real>(n: Vec3<R>) -> Vec3<R> {
+    let axis = if n.x.abs() < R::of(0.5) {
+        vec3(R::ONE, R::ZERO, R::ZERO)
+    } else {
+        vec3(R::ZERO, R::ZERO, R::ONE)
+    };
+    (axis - n * n.dot(axis)).unit_or(Vec3::UP)
 }
 
 fn bend_springs<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, twice_a: R) {
@@ -130,10 +184,45 @@ fn bend_springs<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, twice_a: R) {
     }
 }
 
+/// Structural springs from tip to root: a node below a pushed one follows it to the segment's
+/// length, so that a blade pushed against its own direction bows out instead of being shortened.
+/// The pushed node is held by the body and has no responsibility (r = 0), its partner all of it.
+fn follow_pushed<R: Real>(nodes: &mut Nodes<R>, pushed: u32, place: &Place<R>) {
+    let mut held = false;
+    for j in (1..place.segments).rev() {
+        held |= pushed >> (j + 1) & 1 == 1;
+        if held && pushed >> j & 1 == 0 {
+            let rest = (place.wind[j] - place.wind[j + 1]).unit_or(-Vec3::UP);
+            let inward = (nodes[j] - nodes[j + 1]).unit_or(rest);
+            nodes[j] = nodes[j + 1] + inward * place.length;
+        }
+    }
+}
+
+/// Moves nodes onto the rest length of their segments, from root to tip. A segment that would dip
+/// into the ground is laid on it at its full length (cutting it off there would shorten it), one
+/// that would end in a body is turned out of it.
+fn lay_out<R: Real>(nodes: &mut Nodes<R>, faces: &mut [u32], bodies: &Bodies<R>, place: &Place<R>) {
+    let length = place.length;
+    for (j, face) in faces.iter_mut().enumerate() {
+        let rest = (place.wind[j + 1] - place.wind[j]).unit_or(Vec3::UP);
+        let direction = (nodes[j + 1] - nodes[j]).unit_or(rest);
+        let mut next = nodes[j] + direction * length;
+        let height = ground_in_anchor(place.ground, place.anchor, next.x, next.z);
+        if next.y < height {
+            let rise = (height - nodes[j].y).clamp(-length, length);
+            let run = (length * length - rise * rise).max(R::ZERO).sqrt();
+            let flat = vec3(direction.x, R::ZERO, direction.z);
+            let sideways = vec3(rest.x, R::ZERO, rest.z).unit_or(vec3(R::ONE, R::ZERO, R::ZERO));
+            next = nodes[j] + flat.unit_or(sideways) * run + Vec3::UP * rise;
+        }
+        nodes[j + 1] = bodies.turn_out(nodes[j], next, rest, length, face);
+    }
+}
+
 fn keep_above_ground<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>) {
     for node in &mut nodes[1..=place.segments] {
-        let height =
-            crate::field::grid::ground_in_anchor(place.ground, place.anchor, node.x, node.z);
+        let height = ground_in_anchor(place.ground, place.anchor, node.x, node.z);
         node.y = node.y.max(height);
     }
 }
