@@ -24,7 +24,10 @@ pub struct SceneError {
 pub enum Problem {
     #[error("the file cannot be read: {0}")]
     Unreadable(std::io::Error),
-    #[error("the file has {bytes} bytes, more than the limit of {} for a scene", limits::SCENE_BYTES)]
+    #[error(
+        "the file has {bytes} bytes, more than the limit of {} for a scene",
+        limits::SCENE_BYTES
+    )]
     TooLarge { bytes: u64 },
     #[error("the file is no UTF-8 text; save it as UTF-8")]
     NotText,
@@ -42,14 +45,22 @@ pub enum Problem {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AssetError {
-    #[error("`{file}` is in none of the folders looked in ({folders}); put it beside the scene or name its folder with --assets")]
+    #[error(
+        "`{file}` is in none of the folders looked in ({folders}); put it beside the scene or name its folder with --assets"
+    )]
     NotFound { file: String, folders: String },
-    #[error("`{file}` would leave the scene's folder and the asset folders; give a relative path that stays inside, without `..` and links that lead out")]
+    #[error(
+        "`{file}` would leave the scene's folder and the asset folders; give a relative path that stays inside, without `..` and links that lead out"
+    )]
     Outside { file: String },
     #[error("`{file}` cannot be read: {reason}")]
     Unreadable { file: String, reason: String },
     #[error("`{file}` has {bytes} bytes, more than the limit of {limit} for an asset")]
-    TooLarge { file: String, bytes: u64, limit: u64 },
+    TooLarge {
+        file: String,
+        bytes: u64,
+        limit: u64,
+    },
     #[error("`{file}` is {found}; {wanted} is needed")]
     Format {
         file: String,

@@ -7,11 +7,18 @@ pub(super) fn extents(points: &[[f32; 3]]) -> [f64; 3] {
     let Some(&origin) = points.first() else {
         return [0.0; 3];
     };
-    let offsets = || points.iter().map(|p| [0, 1, 2].map(|i| f64::from(p[i]) - f64::from(origin[i])));
+    let offsets = || {
+        points
+            .iter()
+            .map(|p| [0, 1, 2].map(|i| f64::from(p[i]) - f64::from(origin[i])))
+    };
     let far = |measure: &dyn Fn([f64; 3]) -> f64| {
         offsets()
             .map(|p| (measure(p), p))
-            .fold((0.0, [0.0; 3]), |best, next| if next.0 > best.0 { next } else { best })
+            .fold(
+                (0.0, [0.0; 3]),
+                |best, next| if next.0 > best.0 { next } else { best },
+            )
     };
     let (length, along) = far(&norm);
     let along = along.map(|x| if length > 0.0 { x / length } else { 0.0 });

@@ -77,8 +77,7 @@ pub fn parse_scene_with(
 /// # Errors
 /// A folder that cannot be listed.
 pub fn scene_files(folder: &Path) -> Result<Vec<PathBuf>, SceneError> {
-    let unreadable =
-        |e| SceneError::whole(&folder.display().to_string(), Problem::Unreadable(e));
+    let unreadable = |e| SceneError::whole(&folder.display().to_string(), Problem::Unreadable(e));
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();
@@ -180,14 +179,22 @@ mod tests {
     fn a_missing_file_is_named() {
         let error = load_scene(Path::new("/no/such/scene.ron"), &[]).expect_err("it is not there");
         let text = error.to_string();
-        assert!(text.starts_with("/no/such/scene.ron:1:1: scene: the file cannot be read:"), "{text}");
+        assert!(
+            text.starts_with("/no/such/scene.ron:1:1: scene: the file cannot be read:"),
+            "{text}"
+        );
         assert!(scene_files(Path::new("/no/such")).is_err());
     }
 
     #[test]
     fn text_that_is_too_long_is_refused_unread() {
         let long = " ".repeat(SCENE_BYTES as usize + 1);
-        let text = parse_scene("long", &long, &[]).expect_err("too long").to_string();
-        assert!(text.contains("1048577") && text.contains("1048576"), "{text}");
+        let text = parse_scene("long", &long, &[])
+            .expect_err("too long")
+            .to_string();
+        assert!(
+            text.contains("1048577") && text.contains("1048576"),
+            "{text}"
+        );
     }
 }

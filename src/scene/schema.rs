@@ -26,7 +26,10 @@ mod tests {
         let solver = &schema["$defs"]["Solver"]["properties"];
         assert_eq!(solver["segments"]["maximum"], 16.0);
         assert!(solver["segments"]["description"].is_string());
-        assert_eq!(schema["$defs"]["Body"]["required"], serde_json::json!(["name", "shape"]));
+        assert_eq!(
+            schema["$defs"]["Body"]["required"],
+            serde_json::json!(["name", "shape"])
+        );
         assert_eq!(schema["additionalProperties"], false);
     }
 }

@@ -19,9 +19,15 @@ pub(super) fn explain(file: &str, source: &str, error: &SpannedError) -> SceneEr
     };
     let around = positions.around(offset);
     match &error.code {
-        Error::NoSuchStructField { expected, found, .. } => {
+        Error::NoSuchStructField {
+            expected, found, ..
+        } => {
             let group = positions.group_around(offset);
-            fail(start, &join(&group.path, found), unknown("key", found, expected))
+            fail(
+                start,
+                &join(&group.path, found),
+                unknown("key", found, expected),
+            )
         }
         Error::MissingStructField { field, .. } => {
             // The reader stands behind the closing bracket; one character back is inside it.
@@ -35,11 +41,19 @@ pub(super) fn explain(file: &str, source: &str, error: &SpannedError) -> SceneEr
             let what = "is given twice; keep one of the two".to_owned();
             fail(start, &join(&group.path, field), what)
         }
-        Error::NoSuchEnumVariant { expected, found, .. } => {
-            fail(around.position, &around.path, unknown("choice", found, expected))
-        }
+        Error::NoSuchEnumVariant {
+            expected, found, ..
+        } => fail(
+            around.position,
+            &around.path,
+            unknown("choice", found, expected),
+        ),
         code => match expectation(code) {
-            Some(wanted) => fail(around.position, &around.path, format!("{}; {wanted}", is(&around))),
+            Some(wanted) => fail(
+                around.position,
+                &around.path,
+                format!("{}; {wanted}", is(&around)),
+            ),
             None => bracket_problem(code, &positions, &around, [start, end], &fail),
         },
     }
@@ -53,17 +67,23 @@ fn expectation(code: &Error) -> Option<String> {
         Error::ExpectedInteger
         | Error::IntegerOutOfBounds
         | Error::InvalidIntegerDigit { .. }
-        | Error::UnderscoreAtBeginning => "write a whole number, 0 or more, that fits the key".to_owned(),
+        | Error::UnderscoreAtBeginning => {
+            "write a whole number, 0 or more, that fits the key".to_owned()
+        }
         Error::ExpectedString => "write text in double quotes".to_owned(),
         Error::ExpectedArray => "write a list in square brackets: [ … ]".to_owned(),
         Error::ExpectedStructLike | Error::ExpectedNamedStructLike(_) => {
-            "write it in round brackets: fields as (key: value, …), a vector as (x, y, z)".to_owned()
+            "write it in round brackets: fields as (key: value, …), a vector as (x, y, z)"
+                .to_owned()
         }
         Error::ExpectedDifferentStructName { expected, .. } => {
             format!("write {expected}( … ), or only ( … )")
         }
         Error::ExpectedDifferentLength { expected, .. } => {
-            format!("write {}", expected.replace("an array of length", "a vector of as many numbers as"))
+            format!(
+                "write {}",
+                expected.replace("an array of length", "a vector of as many numbers as")
+            )
         }
         Error::InvalidValueForType { expected, .. } => format!("write {expected}"),
         Error::Message(message) => message.clone(),
@@ -80,7 +100,9 @@ fn bracket_problem(
     fail: &dyn Fn(Position, &str, String) -> SceneError,
 ) -> SceneError {
     let inside_a_number = around.position < start
-        && around.word.is_some_and(|w| w.starts_with(|c: char| c.is_ascii_digit() || c == '-'));
+        && around
+            .word
+            .is_some_and(|w| w.starts_with(|c: char| c.is_ascii_digit() || c == '-'));
     let what = match code {
         // The reader took `4` of `4.5` for the whole number it looked for.
         Error::ExpectedComma if inside_a_number => {
@@ -98,13 +120,27 @@ fn bracket_problem(
         Error::ExpectedMapEnd => "`}` belongs here",
         Error::ExpectedStringEnd => "the text that begins here has no closing double quote",
         Error::UnclosedBlockComment => "the comment has no closing `*/`",
-        Error::ExpectedIdentifier => "the name of a key belongs here; a body or a wind in an action stands in one pair of brackets: Spawn(name: …)",
+        Error::ExpectedIdentifier => {
+            "the name of a key belongs here; a body or a wind in an action stands in one pair of brackets: Spawn(name: …)"
+        }
         Error::Eof => "the text ends in the middle of the scene; close its brackets",
-        Error::TrailingCharacters => "there is more text behind the scene; a file holds one scene in one pair of brackets",
+        Error::TrailingCharacters => {
+            "there is more text behind the scene; a file holds one scene in one pair of brackets"
+        }
         Error::ExceededRecursionLimit => "brackets are nested too deeply for a scene",
-        other => return fail(end, &around.path, format!("this is not valid RON ({other})")),
+        other => {
+            return fail(
+                end,
+                &around.path,
+                format!("this is not valid RON ({other})"),
+            );
+        }
     };
-    let at = if matches!(code, Error::ExpectedStringEnd) { start } else { end };
+    let at = if matches!(code, Error::ExpectedStringEnd) {
+        start
+    } else {
+        end
+    };
     fail(at, &around.path, what.to_owned())
 }
 
@@ -133,7 +169,10 @@ fn unknown(kind: &str, found: &str, expected: &[&str]) -> String {
         // A third of the letters wrong is a typing error; more is another word.
         .filter(|&(distance, e)| 3 * distance <= e.chars().count().max(3));
     let hint = near.map_or_else(String::new, |(_, e)| format!("did you mean {e}? "));
-    format!("`{found}` is no known {kind}; {hint}allowed are {}", expected.join(", "))
+    format!(
+        "`{found}` is no known {kind}; {hint}allowed are {}",
+        expected.join(", ")
+    )
 }
 
 /// Fewest insertions, removals and replacements that turn one word into another (Levenshtein).

@@ -18,7 +18,11 @@ use crate::scene::limits::{GLTF_DEPTH, GLTF_OBJECTS, MESH_TRIANGLES, MESH_VERTIC
 /// Rows of an affine transform: the last column is the shift.
 type Affine = [[f64; 4]; 3];
 
-const IDENTITY: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+const IDENTITY: Affine = [
+    [1.0, 0.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0, 0.0],
+    [0.0, 0.0, 1.0, 0.0],
+];
 const HEADER_BYTES: usize = 12;
 
 /// Reads the surface of a `.gltf` or `.glb` file; `source` gives its separate buffers.
@@ -54,7 +58,9 @@ fn parse<'a>(
         let said = said.map_or(0, u32::from_le_bytes) as usize;
         if said < HEADER_BYTES || said > bytes.len() {
             let is = bytes.len();
-            return Err(invalid(format!("its header says {said} bytes, it has {is}")));
+            return Err(invalid(format!(
+                "its header says {said} bytes, it has {is}"
+            )));
         }
         let glb = Glb::from_slice(bytes).map_err(|e| invalid(e.to_string()))?;
         (glb.json, glb.bin)
@@ -93,14 +99,20 @@ fn count_objects(json: &[u8]) -> u64 {
 
 /// The nodes of the default scene, of the first one, or those that are no node's child.
 fn roots(document: &Document) -> Vec<Node<'_>> {
-    if let Some(scene) = document.default_scene().or_else(|| document.scenes().next()) {
+    if let Some(scene) = document
+        .default_scene()
+        .or_else(|| document.scenes().next())
+    {
         return scene.nodes().collect();
     }
     let children: HashSet<usize> = document
         .nodes()
         .flat_map(|n| n.children().map(|c| c.index()).collect::<Vec<_>>())
         .collect();
-    document.nodes().filter(|n| !children.contains(&n.index())).collect()
+    document
+        .nodes()
+        .filter(|n| !children.contains(&n.index()))
+        .collect()
 }
 
 struct Surface<'a> {
@@ -153,10 +165,17 @@ impl Surface<'_> {
             });
         }
         let positions = primitive.get(&Semantic::Positions).ok_or_else(|| {
-            damaged(self.file, "a mesh in it has no POSITION attribute".to_owned())
+            damaged(
+                self.file,
+                "a mesh in it has no POSITION attribute".to_owned(),
+            )
         })?;
         let first = self.mesh.positions.len();
-        self.budget(first as u64 + positions.count() as u64, "vertices", MESH_VERTICES)?;
+        self.budget(
+            first as u64 + positions.count() as u64,
+            "vertices",
+            MESH_VERTICES,
+        )?;
         let positions = self.buffers.positions(&positions)?;
         let corners = match primitive.indices() {
             Some(indices) => {
@@ -174,7 +193,9 @@ impl Surface<'_> {
         for triangle in triangles {
             // Both terms are below 2³²; a sum that is not names no vertex and is refused later.
             let [a, b, c] = triangle.map(|i| i.saturating_add(first as u32));
-            self.mesh.triangles.push(if mirrored { [a, c, b] } else { [a, b, c] });
+            self.mesh
+                .triangles
+                .push(if mirrored { [a, c, b] } else { [a, b, c] });
         }
         Ok(())
     }
@@ -230,10 +251,17 @@ mod tests {
 
     /// A tetrahedron: four positions, then four triangles of 16-bit indices.
     fn buffer() -> Vec<u8> {
-        let positions = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let positions = [
+            [0.0_f32, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+        ];
         let corners = [0_u16, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
         let positions = positions.iter().flatten().flat_map(|x| x.to_le_bytes());
-        positions.chain(corners.iter().flat_map(|i| i.to_le_bytes())).collect()
+        positions
+            .chain(corners.iter().flat_map(|i| i.to_le_bytes()))
+            .collect()
     }
 
     fn json(nodes: &str, uri: &str) -> String {
@@ -272,10 +300,17 @@ mod tests {
 
     #[test]
     fn a_buffer_beside_the_file_and_a_moved_node() {
-        let json = json(r#"{"mesh":0,"translation":[0,5,0],"scale":[2,2,2]}"#, r#""uri":"my%20t.bin","#);
+        let json = json(
+            r#"{"mesh":0,"translation":[0,5,0],"scale":[2,2,2]}"#,
+            r#""uri":"my%20t.bin","#,
+        );
         let mesh = read_with(&json, &[("a/my t.bin", &buffer())]).expect("valid");
         assert_eq!(mesh.triangles.len(), 4);
-        assert!(mesh.positions.contains(&[0.0, 7.0, 0.0]), "{:?}", mesh.positions);
+        assert!(
+            mesh.positions.contains(&[0.0, 7.0, 0.0]),
+            "{:?}",
+            mesh.positions
+        );
     }
 
     #[test]
@@ -283,13 +318,22 @@ mod tests {
         let nodes = r#"{"children":[1],"scale":[-1,1,1]},{"mesh":0,"translation":[1,0,0]}"#;
         let bytes = glb(&json(nodes, ""), &buffer());
         let mesh = read_mesh("t.glb", &Embedded(&[("t.glb", &bytes)])).expect("valid");
-        assert!(mesh.positions.contains(&[-2.0, 0.0, 0.0]), "{:?}", mesh.positions);
+        assert!(
+            mesh.positions.contains(&[-2.0, 0.0, 0.0]),
+            "{:?}",
+            mesh.positions
+        );
         // Outward faces stay outward: the signed volume of the tetrahedron stays +1/6.
-        let volume: f32 = mesh.triangles.iter().map(|t| {
-            let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
-            (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
-                + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6.0
-        }).sum();
+        let volume: f32 = mesh
+            .triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+                (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+                    + a[2] * (b[0] * c[1] - b[1] * c[0]))
+                    / 6.0
+            })
+            .sum();
         assert!((volume - 1.0 / 6.0).abs() < 1e-6, "{volume}");
     }
 
@@ -317,7 +361,9 @@ mod tests {
             r#"{"children":[1,1]},{"mesh":0}"#,
         ] {
             let bytes = glb(&json(nodes, ""), &buffer());
-            let text = read("t.glb", &bytes, &Embedded(&[])).expect_err(nodes).to_string();
+            let text = read("t.glb", &bytes, &Embedded(&[]))
+                .expect_err(nodes)
+                .to_string();
             assert!(text.contains("more than once"), "{text}");
         }
     }
@@ -326,7 +372,9 @@ mod tests {
     fn buffers_stay_inside_and_whole() {
         let text = |uri: &str| {
             let json = json(r#"{"mesh":0}"#, &format!(r#""uri":"{uri}","#));
-            read_with(&json, &[("a/short.bin", &[1, 2])]).expect_err(uri).to_string()
+            read_with(&json, &[("a/short.bin", &[1, 2])])
+                .expect_err(uri)
+                .to_string()
         };
         assert!(text("%FF").contains("%FF"));
         assert!(text("short.bin").contains("2 of the 72 bytes"));

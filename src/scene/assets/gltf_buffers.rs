@@ -109,17 +109,27 @@ impl<'a> Buffers<'a> {
             viewed.get(range(accessor.offset(), before_last.checked_add(SIZE)?)?)
         })();
         let bytes = bytes.filter(|_| stride >= SIZE).ok_or_else(|| {
-            damaged(self.file, format!("accessor {index} reaches outside its buffer"))
+            damaged(
+                self.file,
+                format!("accessor {index} reaches outside its buffer"),
+            )
         })?;
         Ok(bytes.chunks(stride).filter_map(|e| e.first_chunk()))
     }
 
     fn format(&self, accessor: &Accessor<'_>, wanted: &'static str) -> AssetError {
         let (kind, size) = (accessor.data_type(), accessor.dimensions());
-        let sparse = if accessor.sparse().is_some() { ", sparse" } else { "" };
+        let sparse = if accessor.sparse().is_some() {
+            ", sparse"
+        } else {
+            ""
+        };
         AssetError::Format {
             file: self.file.to_owned(),
-            found: format!("with accessor {} of {size:?} of {kind:?}{sparse}", accessor.index()),
+            found: format!(
+                "with accessor {} of {size:?} of {kind:?}{sparse}",
+                accessor.index()
+            ),
             wanted,
         }
     }
@@ -134,7 +144,10 @@ fn fetch(
     if let Some(data) = uri.strip_prefix("data:") {
         let text = data.split_once(";base64,").map(|(_, text)| text);
         return text.and_then(base64::decode).ok_or_else(|| {
-            damaged(file, "a buffer inside it is no valid base64 data".to_owned())
+            damaged(
+                file,
+                "a buffer inside it is no valid base64 data".to_owned(),
+            )
         });
     }
     if let Some((scheme, _)) = uri.split_once(':') {

@@ -34,7 +34,10 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<HeightMap, AssetError> {
     if (header.color_type, header.bit_depth) != (ColorType::Grayscale, BitDepth::Sixteen) {
         return Err(AssetError::Format {
             file: file.to_owned(),
-            found: format!("a {}-bit {:?} PNG", header.bit_depth as u8, header.color_type),
+            found: format!(
+                "a {}-bit {:?} PNG",
+                header.bit_depth as u8, header.color_type
+            ),
             wanted: "a 16-bit grey PNG without transparency",
         });
     }
@@ -44,7 +47,9 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<HeightMap, AssetError> {
     let mut packed = vec![0; columns as usize * rows as usize * 2];
     let frame = reader.next_frame(&mut packed).map_err(unpack)?;
     if (frame.width, frame.height) != (columns, rows) {
-        return Err(damaged("its first picture is smaller than its header says".to_owned()));
+        return Err(damaged(
+            "its first picture is smaller than its header says".to_owned(),
+        ));
     }
     let (pairs, _) = packed.as_chunks::<2>();
     Ok(HeightMap {
@@ -90,7 +95,9 @@ mod tests {
         encoder.set_color(color);
         encoder.set_depth(depth);
         let mut writer = encoder.write_header().expect("a valid header");
-        writer.write_image_data(data).expect("as many bytes as the header says");
+        writer
+            .write_image_data(data)
+            .expect("as many bytes as the header says");
         drop(writer);
         bytes
     }

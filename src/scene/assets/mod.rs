@@ -128,10 +128,7 @@ fn ending_of(file: &str) -> String {
 }
 
 /// Runs a reader of foreign bytes; a panic inside its package becomes an error.
-fn guarded<T>(
-    file: &str,
-    read: impl FnOnce() -> Result<T, AssetError>,
-) -> Result<T, AssetError> {
+fn guarded<T>(file: &str, read: impl FnOnce() -> Result<T, AssetError>) -> Result<T, AssetError> {
     // Nothing the reader leaves half done outlives the call: it only owns what it returns.
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(read)).unwrap_or_else(|_| {
         Err(AssetError::Damaged {

@@ -21,13 +21,12 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<TriangleMesh, AssetError>
         ignore_lines: true,
     };
     let no_materials = |_: &std::path::Path| Ok((Vec::new(), HashMap::new()));
-    let (models, _) =
-        tobj::load_obj_buf(&mut &*bytes, &options, no_materials).map_err(|e| {
-            AssetError::Damaged {
-                file: file.to_owned(),
-                reason: format!("it is no valid OBJ: {e}"),
-            }
-        })?;
+    let (models, _) = tobj::load_obj_buf(&mut &*bytes, &options, no_materials).map_err(|e| {
+        AssetError::Damaged {
+            file: file.to_owned(),
+            reason: format!("it is no valid OBJ: {e}"),
+        }
+    })?;
     let mut all = TriangleMesh::default();
     for model in &models {
         // At most MESH_VERTICES corners were counted, so the sum fits.
@@ -45,7 +44,9 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<TriangleMesh, AssetError>
 fn count(file: &str, bytes: &[u8]) -> Result<(), AssetError> {
     let (mut vertices, mut triangles) = (0_u64, 0_u64);
     for line in bytes.split(|&b| b == b'\n') {
-        let mut words = line.split(|b| b.is_ascii_whitespace()).filter(|w| !w.is_empty());
+        let mut words = line
+            .split(|b| b.is_ascii_whitespace())
+            .filter(|w| !w.is_empty());
         match words.next() {
             Some(b"v") => vertices += 1,
             Some(b"f") => triangles += (words.count() as u64).saturating_sub(2),
@@ -107,7 +108,12 @@ f 2 3 4
 
     #[test]
     fn bad_faces_are_refused() {
-        for bad in ["v 0 0 0\nf 1 2 3\n", "v 0 0\n", "v 0 0 0\nf 1 x 1\n", "v 0 0 0\nf 0 0 0\n"] {
+        for bad in [
+            "v 0 0 0\nf 1 2 3\n",
+            "v 0 0\n",
+            "v 0 0 0\nf 1 x 1\n",
+            "v 0 0 0\nf 0 0 0\n",
+        ] {
             assert!(read("bad.obj", bad.as_bytes()).is_err(), "{bad:?}");
         }
     }
@@ -119,6 +125,9 @@ f 2 3 4
             text.push_str(&format!("f{}\n", " 1".repeat(10_003)));
         }
         let error = read("big.obj", text.as_bytes()).expect_err("over budget");
-        assert!(matches!(error, AssetError::OverBudget { count: 200_020, .. }), "{error}");
+        assert!(
+            matches!(error, AssetError::OverBudget { count: 200_020, .. }),
+            "{error}"
+        );
     }
 }

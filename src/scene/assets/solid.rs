@@ -25,7 +25,9 @@ pub(super) fn checked(file: &str, raw: TriangleMesh) -> Result<TriangleMesh, Ass
     };
     if welded.triangles.is_empty() {
         let count = raw.triangles.len();
-        return Err(no_solid(format!("none of its {count} triangles has an area")));
+        return Err(no_solid(format!(
+            "none of its {count} triangles has an area"
+        )));
     }
     let [length, _, thickness] = extents(&welded.positions);
     if thickness <= FLATNESS * length {
@@ -57,14 +59,19 @@ fn check_numbers(file: &str, mesh: &TriangleMesh) -> Result<(), AssetError> {
     };
     for (i, p) in mesh.positions.iter().enumerate() {
         if !p.iter().all(|x| x.is_finite()) {
-            return Err(damaged(format!("vertex {} is at {p:?}, which is no place", i + 1)));
+            return Err(damaged(format!(
+                "vertex {} is at {p:?}, which is no place",
+                i + 1
+            )));
         }
     }
     for (i, t) in mesh.triangles.iter().enumerate() {
         let count = mesh.positions.len();
         if let Some(bad) = t.iter().find(|&&v| v as usize >= count) {
             let (i, bad) = (i + 1, u64::from(*bad) + 1);
-            return Err(damaged(format!("triangle {i} names vertex {bad} of {count}")));
+            return Err(damaged(format!(
+                "triangle {i} names vertex {bad} of {count}"
+            )));
         }
     }
     Ok(())
@@ -109,7 +116,12 @@ mod tests {
 
     fn tetrahedron() -> TriangleMesh {
         TriangleMesh {
-            positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            positions: vec![
+                [0.0, 0.0, 0.0],
+                [1.0, 0.0, 0.0],
+                [0.0, 1.0, 0.0],
+                [0.0, 0.0, 1.0],
+            ],
             triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
         }
     }

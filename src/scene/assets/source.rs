@@ -139,7 +139,16 @@ mod tests {
     #[test]
     fn paths_stay_inside() {
         assert_eq!(inside("./a/b.obj"), Some(PathBuf::from("a/b.obj")));
-        for bad in ["", ".", "..", "../a", "a/../../b", "/etc/passwd", "a\\b", "a\0"] {
+        for bad in [
+            "",
+            ".",
+            "..",
+            "../a",
+            "a/../../b",
+            "/etc/passwd",
+            "a\\b",
+            "a\0",
+        ] {
             assert_eq!(inside(bad), None, "{bad:?}");
         }
         assert_eq!(beside("assets/chair.gltf", "chair.bin"), "assets/chair.bin");
@@ -161,10 +170,20 @@ mod tests {
         assert_eq!(source.read("late", 10).ok(), Some(b"late".to_vec()));
         assert!(matches!(
             source.read("late", 3),
-            Err(AssetError::TooLarge { bytes: 4, limit: 3, .. })
+            Err(AssetError::TooLarge {
+                bytes: 4,
+                limit: 3,
+                ..
+            })
         ));
-        assert!(matches!(source.read("never", 9), Err(AssetError::NotFound { .. })));
-        assert!(matches!(source.read("../two/late", 9), Err(AssetError::Outside { .. })));
+        assert!(matches!(
+            source.read("never", 9),
+            Err(AssetError::NotFound { .. })
+        ));
+        assert!(matches!(
+            source.read("../two/late", 9),
+            Err(AssetError::Outside { .. })
+        ));
         #[cfg(unix)]
         {
             std::os::unix::fs::symlink(&two, one.join("way_out")).expect("a temporary link");

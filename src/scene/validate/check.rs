@@ -96,7 +96,9 @@ pub(super) fn within<T: Number>(key: &Key, value: T, range: &Range) -> Check {
     if value.is_within(range) {
         return Ok(());
     }
-    let is = value.flaw().map_or_else(|| value.to_string(), str::to_owned);
+    let is = value
+        .flaw()
+        .map_or_else(|| value.to_string(), str::to_owned);
     key.clone().fail(format!("is {is}; write {range}"))
 }
 
@@ -123,7 +125,8 @@ pub(super) fn at_most(key: &Key, count: usize, limit: usize, what: &str) -> Chec
     if count <= limit {
         return Ok(());
     }
-    key.clone().fail(format!("makes {count} {what}; at most {limit} are allowed"))
+    key.clone()
+        .fail(format!("makes {count} {what}; at most {limit} are allowed"))
 }
 
 /// A name that fits a menu and a file name.
@@ -142,7 +145,11 @@ pub(super) fn name(key: &Key, name: &str) -> Check {
 mod tests {
     use super::*;
 
-    const RANGE: Range = Range { min: 0.1, max: 2.0, unit: "m" };
+    const RANGE: Range = Range {
+        min: 0.1,
+        max: 2.0,
+        unit: "m",
+    };
 
     #[test]
     fn numbers_at_and_beyond_the_limits() {
@@ -150,9 +157,16 @@ mod tests {
         for good in [0.1_f32, 1.0, 2.0] {
             assert_eq!(within(&key, good, &RANGE), Ok(()));
         }
-        let what = |value: f32| within(&key, value, &RANGE).expect_err("outside").to_string();
+        let what = |value: f32| {
+            within(&key, value, &RANGE)
+                .expect_err("outside")
+                .to_string()
+        };
         assert_eq!(what(-1.0), "a[2]: is -1; write 0.1 to 2 m");
-        assert_eq!(what(f32::NAN), "a[2]: is NaN, which is no number; write 0.1 to 2 m");
+        assert_eq!(
+            what(f32::NAN),
+            "a[2]: is NaN, which is no number; write 0.1 to 2 m"
+        );
         assert!(what(f32::INFINITY).contains("past 3.4e38"));
         assert!(within(&key, f64::NEG_INFINITY, &RANGE).is_err());
         assert!(within(&key, 3_u32, &RANGE).is_err());
@@ -162,7 +176,9 @@ mod tests {
     fn pairs_and_names() {
         let key = Key::root().field("pair");
         assert_eq!(ordered(&key, [0.5, 0.5], &RANGE), Ok(()));
-        let text = ordered(&key, [2.0, 0.5], &RANGE).expect_err("reversed").to_string();
+        let text = ordered(&key, [2.0, 0.5], &RANGE)
+            .expect_err("reversed")
+            .to_string();
         assert_eq!(text, "pair: is (2, 0.5); write the smaller value first");
         assert!(name(&key, "a ball").is_ok());
         for bad in ["", "a\nb", &"x".repeat(65)] {

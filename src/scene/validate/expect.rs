@@ -7,7 +7,12 @@ use crate::scene::limits::Range;
 use crate::scene::{Expectation, Scene, limits};
 
 pub(super) fn expectations(key: &Key, scene: &Scene) -> Check {
-    at_most(key, scene.expect.len(), limits::EXPECTATIONS, "expectations")?;
+    at_most(
+        key,
+        scene.expect.len(),
+        limits::EXPECTATIONS,
+        "expectations",
+    )?;
     for (i, expectation) in scene.expect.iter().enumerate() {
         one(&key.nth(i), expectation, scene)?;
     }
@@ -18,19 +23,36 @@ fn one(key: &Key, expectation: &Expectation, scene: &Scene) -> Check {
     let time = |at_s: f64| in_the_run(&key.field("at_s"), at_s, scene);
     let radius = |m: f64| within(&key.field("within_m"), m, &limits::MEASURED_RADIUS);
     match expectation {
-        Expectation::Lean { at_s, near_m, within_m, at_least_deg, at_most_deg } => {
+        Expectation::Lean {
+            at_s,
+            near_m,
+            within_m,
+            at_least_deg,
+            at_most_deg,
+        } => {
             time(*at_s)?;
             within_each(&key.field("near_m"), near_m, &limits::PLACE)?;
             radius(*within_m)?;
             let names = ["at_least_deg", "at_most_deg"];
             bounds(key, names, [*at_least_deg, *at_most_deg], &limits::LEAN)
         }
-        Expectation::Offset { at_s, near_m, within_m, at_least_m, at_most_m } => {
+        Expectation::Offset {
+            at_s,
+            near_m,
+            within_m,
+            at_least_m,
+            at_most_m,
+        } => {
             time(*at_s)?;
             within_each(&key.field("near_m"), near_m, &limits::PLACE)?;
             radius(*within_m)?;
             let names = ["at_least_m", "at_most_m"];
-            bounds(key, names, [*at_least_m, *at_most_m], &limits::MEASURED_OFFSET)
+            bounds(
+                key,
+                names,
+                [*at_least_m, *at_most_m],
+                &limits::MEASURED_OFFSET,
+            )
         }
         Expectation::Penetration { at_most_m } => at_most_m.map_or(Ok(()), |m| {
             within(&key.field("at_most_m"), m, &limits::MEASURED_OFFSET)
@@ -40,18 +62,25 @@ fn one(key: &Key, expectation: &Expectation, scene: &Scene) -> Check {
         }
         Expectation::AllRest { by_s } => in_the_run(&key.field("by_s"), *by_s, scene),
         Expectation::ActiveTiles { at_least, at_most }
-        | Expectation::SimulatedPlants { at_least, at_most } => {
-            counts(key, *at_least, *at_most)
-        }
+        | Expectation::SimulatedPlants { at_least, at_most } => counts(key, *at_least, *at_most),
         // Any number of bytes can be asked for.
         Expectation::StateBytes { at_most: _ } => Ok(()),
-        Expectation::BodyNear { body, at_s, position_m, within_m } => {
+        Expectation::BodyNear {
+            body,
+            at_s,
+            position_m,
+            within_m,
+        } => {
             known(&key.field("body"), body, scene)?;
             time(*at_s)?;
             within_each(&key.field("position_m"), position_m, &limits::PLACE)?;
             radius(*within_m)
         }
-        Expectation::Imprint { body, at_s, at_least } => {
+        Expectation::Imprint {
+            body,
+            at_s,
+            at_least,
+        } => {
             known(&key.field("body"), body, scene)?;
             time(*at_s)?;
             within(&key.field("at_least"), *at_least, &limits::FRACTION)
@@ -80,12 +109,12 @@ where
 {
     let [least, most] = names;
     match limits {
-        [None, None] => key
-            .clone()
-            .fail(format!("has no limit, so nothing could miss it; give {least} or {most}")),
-        [Some(low), Some(high)] if low > high => key
-            .field(least)
-            .fail(format!("is {low}, above {most}, {high}; no value can be both")),
+        [None, None] => key.clone().fail(format!(
+            "has no limit, so nothing could miss it; give {least} or {most}"
+        )),
+        [Some(low), Some(high)] if low > high => key.field(least).fail(format!(
+            "is {low}, above {most}, {high}; no value can be both"
+        )),
         _ => Ok(()),
     }
 }
@@ -93,7 +122,9 @@ where
 fn hash(key: &Key, is: &str) -> Check {
     let hexadecimal = is.bytes().all(|b| b.is_ascii_hexdigit());
     if is.is_empty() || is.len() > 64 || !hexadecimal {
-        return key.field("is").fail("is no hash; write the 1 to 64 hexadecimal digits a run prints");
+        return key
+            .field("is")
+            .fail("is no hash; write the 1 to 64 hexadecimal digits a run prints");
     }
     Ok(())
 }
@@ -107,7 +138,11 @@ pub(super) fn on_the_ground(key: &Key, scene: &Scene, field: &FieldSize) -> Chec
         };
         for axis in 0..2 {
             let half = 0.5 * field.size_m[axis];
-            let ground = Range { min: -half, max: half, unit: "m, where the ground ends" };
+            let ground = Range {
+                min: -half,
+                max: half,
+                unit: "m, where the ground ends",
+            };
             if !near_m[axis].is_within(&ground) {
                 let key = key.nth(i).field("near_m").nth(axis);
                 return within(&key, near_m[axis], &ground);

@@ -28,7 +28,11 @@ fn ground(key: &Key, ground: &Ground) -> Check {
         } => {
             plan(key, size_m, *spacing_m)?;
             within(&key.field("amplitude_m"), *amplitude_m, &limits::AMPLITUDE)?;
-            within(&key.field("wavelength_m"), *wavelength_m, &limits::WAVELENGTH)?;
+            within(
+                &key.field("wavelength_m"),
+                *wavelength_m,
+                &limits::WAVELENGTH,
+            )?;
             within(&key.field("octaves"), *octaves, &limits::OCTAVES)
         }
         Ground::HeightMap {
@@ -49,7 +53,11 @@ fn plan(key: &Key, size_m: &[f32; 2], spacing_m: f32) -> Check {
 
 pub(super) fn grass(key: &Key, grass: &Grass) -> Check {
     let density = grass.density_per_m2;
-    within(&key.field("density_per_m2"), density, &limits::PLANT_DENSITY)?;
+    within(
+        &key.field("density_per_m2"),
+        density,
+        &limits::PLANT_DENSITY,
+    )?;
     let key = key.field("species");
     at_most(&key, grass.species.len(), limits::SPECIES, "species")?;
     for (i, one) in grass.species.iter().enumerate() {
@@ -65,33 +73,77 @@ pub(super) fn grass(key: &Key, grass: &Grass) -> Check {
 fn species(key: &Key, species: &Species) -> Check {
     name(&key.field("name"), &species.name)?;
     within(&key.field("share"), species.share, &limits::SHARE)?;
-    ordered(&key.field("height_m"), species.height_m, &limits::PLANT_HEIGHT)?;
+    ordered(
+        &key.field("height_m"),
+        species.height_m,
+        &limits::PLANT_HEIGHT,
+    )?;
     ordered(&key.field("width_m"), species.width_m, &limits::PLANT_WIDTH)?;
-    ordered(&key.field("stiffness"), species.stiffness, &limits::STIFFNESS)?;
+    ordered(
+        &key.field("stiffness"),
+        species.stiffness,
+        &limits::STIFFNESS,
+    )?;
     ordered(&key.field("lean_deg"), species.lean_deg, &limits::ROOT_LEAN)?;
-    within(&key.field("flexibility"), species.flexibility, &limits::FLEXIBILITY)?;
+    within(
+        &key.field("flexibility"),
+        species.flexibility,
+        &limits::FLEXIBILITY,
+    )?;
     within_each(&key.field("tint_rgb"), &species.tint_rgb, &limits::TINT)
 }
 
 pub(super) fn wind(key: &Key, wind: &Wind) -> Check {
-    within(&key.field("direction_deg"), wind.direction_deg, &limits::ANGLE)?;
+    within(
+        &key.field("direction_deg"),
+        wind.direction_deg,
+        &limits::ANGLE,
+    )?;
     within(&key.field("strength"), wind.strength, &limits::WIND_BEND)?;
     within(&key.field("gust"), wind.gust, &limits::WIND_BEND)?;
-    within(&key.field("gust_length_m"), wind.gust_length_m, &limits::GUST_LENGTH)?;
-    within(&key.field("gust_speed_m_per_s"), wind.gust_speed_m_per_s, &limits::GUST_SPEED)?;
+    within(
+        &key.field("gust_length_m"),
+        wind.gust_length_m,
+        &limits::GUST_LENGTH,
+    )?;
+    within(
+        &key.field("gust_speed_m_per_s"),
+        wind.gust_speed_m_per_s,
+        &limits::GUST_SPEED,
+    )?;
     within(&key.field("flutter"), wind.flutter, &limits::WIND_BEND)
 }
 
 pub(super) fn solver(key: &Key, solver: &Solver) -> Check {
     within(&key.field("substep_s"), solver.substep_s, &limits::SUBSTEP)?;
-    within(&key.field("recovery_s"), solver.recovery_s, &limits::RECOVERY)?;
+    within(
+        &key.field("recovery_s"),
+        solver.recovery_s,
+        &limits::RECOVERY,
+    )?;
     within(&key.field("segments"), solver.segments, &limits::SEGMENTS)?;
-    within(&key.field("cube_resolution"), solver.cube_resolution, &limits::CUBE_RESOLUTION)?;
+    within(
+        &key.field("cube_resolution"),
+        solver.cube_resolution,
+        &limits::CUBE_RESOLUTION,
+    )?;
     within(&key.field("skin_m"), solver.skin_m, &limits::SKIN)?;
-    within(&key.field("spring_rate_per_s"), solver.spring_rate_per_s, &limits::SPRING_RATE)?;
+    within(
+        &key.field("spring_rate_per_s"),
+        solver.spring_rate_per_s,
+        &limits::SPRING_RATE,
+    )?;
     ordered(&key.field("rounds"), solver.rounds, &limits::ROUNDS)?;
-    within(&key.field("strain_limit"), solver.strain_limit, &limits::STRAIN_LIMIT)?;
+    within(
+        &key.field("strain_limit"),
+        solver.strain_limit,
+        &limits::STRAIN_LIMIT,
+    )?;
     within(&key.field("max_sweeps"), solver.max_sweeps, &limits::SWEEPS)?;
     within(&key.field("tile_m"), solver.tile_m, &limits::TILE_SIDE)?;
-    within(&key.field("seeding_cell_m"), solver.seeding_cell_m, &limits::SEEDING_CELL)
+    within(
+        &key.field("seeding_cell_m"),
+        solver.seeding_cell_m,
+        &limits::SEEDING_CELL,
+    )
 }

@@ -25,7 +25,11 @@ use super::{Camera, Ground, Scene, Shape, limits};
 /// The first key that breaks a limit, with its value and the limit.
 pub fn validate(scene: &Scene) -> Result<(), Invalid> {
     let root = Key::root();
-    within(&root.field("duration_s"), scene.duration_s, &limits::DURATION)?;
+    within(
+        &root.field("duration_s"),
+        scene.duration_s,
+        &limits::DURATION,
+    )?;
     meadow::terrain(&root.field("terrain"), &scene.terrain)?;
     meadow::grass(&root.field("grass"), &scene.grass)?;
     meadow::wind(&root.field("wind"), &scene.wind)?;
@@ -66,7 +70,10 @@ pub fn validate_assets(scene: &Scene, assets: &Assets) -> Result<(), Invalid> {
                 let what = format!(
                     "is {scale}, which makes `{file}` about {length} m long; a body is {range} long"
                 );
-                return Err(Invalid { key: format!("{key}.shape.scale"), what });
+                return Err(Invalid {
+                    key: format!("{key}.shape.scale"),
+                    what,
+                });
             }
         }
     }
@@ -74,21 +81,31 @@ pub fn validate_assets(scene: &Scene, assets: &Assets) -> Result<(), Invalid> {
 }
 
 fn size(scene: &Scene, samples: [u64; 2]) -> Result<FieldSize, Invalid> {
-    field_size(&scene.terrain.ground, samples, &scene.grass, &scene.solver).map_err(|over| Invalid {
-        key: over.key.to_owned(),
-        what: over.what,
+    field_size(&scene.terrain.ground, samples, &scene.grass, &scene.solver).map_err(|over| {
+        Invalid {
+            key: over.key.to_owned(),
+            what: over.what,
+        }
     })
 }
 
 fn bodies(scene: &Scene) -> Check {
     let mut names = HashSet::new();
     let count = bodies_with_keys(scene).count();
-    at_most(&Key::root().field("bodies"), count, limits::BODIES, "bodies, spawned ones included")?;
+    at_most(
+        &Key::root().field("bodies"),
+        count,
+        limits::BODIES,
+        "bodies, spawned ones included",
+    )?;
     for (key, one) in bodies_with_keys(scene) {
         let key = Key::of(key);
         body::body(&key, one)?;
         if !names.insert(one.name.as_str()) {
-            let what = format!("is \"{}\", which another body has; give each its own", one.name);
+            let what = format!(
+                "is \"{}\", which another body has; give each its own",
+                one.name
+            );
             return key.field("name").fail(what);
         }
     }
@@ -102,7 +119,10 @@ fn cameras(key: &Key, scene: &Scene) -> Check {
         let key = key.nth(i);
         camera(&key, one)?;
         if !names.insert(one.name.as_str()) {
-            let what = format!("is \"{}\", which another camera has; give each its own", one.name);
+            let what = format!(
+                "is \"{}\", which another camera has; give each its own",
+                one.name
+            );
             return key.field("name").fail(what);
         }
         if let Some(body) = &one.follow {
@@ -116,10 +136,15 @@ fn camera(key: &Key, camera: &Camera) -> Check {
     name(&key.field("name"), &camera.name)?;
     within_each(&key.field("eye_m"), &camera.eye_m, &limits::PLACE)?;
     within_each(&key.field("target_m"), &camera.target_m, &limits::PLACE)?;
-    within(&key.field("fov_deg"), camera.fov_deg, &limits::FIELD_OF_VIEW)?;
+    within(
+        &key.field("fov_deg"),
+        camera.fov_deg,
+        &limits::FIELD_OF_VIEW,
+    )?;
     let apart = (0..3).any(|i| (camera.eye_m[i] - camera.target_m[i]).abs() > 1e-3);
     if !apart {
-        let what = "is where eye_m is; a camera needs a direction, so move one by over a millimetre";
+        let what =
+            "is where eye_m is; a camera needs a direction, so move one by over a millimetre";
         return key.field("target_m").fail(what);
     }
     Ok(())

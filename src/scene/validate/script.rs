@@ -32,7 +32,9 @@ pub(super) fn known(key: &Key, name: &str, scene: &Scene) -> Check {
     } else {
         format!("there are {}", names.join(", "))
     };
-    key.clone().fail(format!("names \"{name}\", which is no body of the scene; {there}"))
+    key.clone().fail(format!(
+        "names \"{name}\", which is no body of the scene; {there}"
+    ))
 }
 
 /// Checks a time against the length of the run.
@@ -49,18 +51,44 @@ fn action(key: &Key, action: &Action) -> Check {
     match action {
         // A spawned body is checked together with the others.
         Action::Spawn(_) | Action::Remove { .. } => Ok(()),
-        Action::Teleport { body: _, position_m, velocity_m_per_s } => {
+        Action::Teleport {
+            body: _,
+            position_m,
+            velocity_m_per_s,
+        } => {
             within_each(&key.field("position_m"), position_m, &limits::PLACE)?;
-            within_each(&key.field("velocity_m_per_s"), velocity_m_per_s, &limits::VELOCITY)
+            within_each(
+                &key.field("velocity_m_per_s"),
+                velocity_m_per_s,
+                &limits::VELOCITY,
+            )
         }
-        Action::Throw { body: _, velocity_m_per_s, spin_deg_per_s } => {
-            within_each(&key.field("velocity_m_per_s"), velocity_m_per_s, &limits::VELOCITY)?;
+        Action::Throw {
+            body: _,
+            velocity_m_per_s,
+            spin_deg_per_s,
+        } => {
+            within_each(
+                &key.field("velocity_m_per_s"),
+                velocity_m_per_s,
+                &limits::VELOCITY,
+            )?;
             within_each(&key.field("spin_deg_per_s"), spin_deg_per_s, &limits::SPIN)
         }
-        Action::Impulse { body: _, impulse_kg_m_per_s } => {
-            within_each(&key.field("impulse_kg_m_per_s"), impulse_kg_m_per_s, &limits::IMPULSE)
-        }
-        Action::Drive { body: _, engine_n, steer_deg, brake_n } => {
+        Action::Impulse {
+            body: _,
+            impulse_kg_m_per_s,
+        } => within_each(
+            &key.field("impulse_kg_m_per_s"),
+            impulse_kg_m_per_s,
+            &limits::IMPULSE,
+        ),
+        Action::Drive {
+            body: _,
+            engine_n,
+            steer_deg,
+            brake_n,
+        } => {
             within(&key.field("engine_n"), *engine_n, &limits::ENGINE_FORCE)?;
             within(&key.field("steer_deg"), *steer_deg, &limits::STEER)?;
             within(&key.field("brake_n"), *brake_n, &limits::BRAKE_FORCE)
@@ -79,7 +107,11 @@ struct Presence<'a> {
 fn play(key: &Key, scene: &Scene) -> Check {
     let mut presences = HashMap::new();
     for body in &scene.bodies {
-        let presence = Presence { body, from_s: 0.0, removed_s: None };
+        let presence = Presence {
+            body,
+            from_s: 0.0,
+            removed_s: None,
+        };
         presences.insert(body.name.as_str(), presence);
     }
     let mut in_time: Vec<_> = scene.script.iter().enumerate().collect();
@@ -89,7 +121,11 @@ fn play(key: &Key, scene: &Scene) -> Check {
         let key = key.nth(i).field("action");
         let Some(name) = event.action.body() else {
             if let Action::Spawn(body) = &event.action {
-                let presence = Presence { body, from_s: event.at_s, removed_s: None };
+                let presence = Presence {
+                    body,
+                    from_s: event.at_s,
+                    removed_s: None,
+                };
                 presences.insert(body.name.as_str(), presence);
             }
             continue;
@@ -120,14 +156,19 @@ fn able(key: &Key, action: &Action, body: &Body) -> Check {
     let name = &body.name;
     match (action, &body.motion) {
         (Action::Drive { .. }, _) if !matches!(body.shape, Shape::Vehicle { .. }) => {
-            key.clone().fail(format!("names \"{name}\", which is no Vehicle and cannot be driven"))
+            key.clone().fail(format!(
+                "names \"{name}\", which is no Vehicle and cannot be driven"
+            ))
         }
-        (Action::Throw { .. } | Action::Impulse { .. } | Action::Teleport { .. }, Motion::Path { .. }) => {
-            key.clone().fail(format!("names \"{name}\", which keeps to its Path whatever acts on it"))
-        }
-        (Action::Throw { .. } | Action::Impulse { .. }, Motion::Fixed) => {
-            key.clone().fail(format!("names \"{name}\", which is Fixed and never moves"))
-        }
+        (
+            Action::Throw { .. } | Action::Impulse { .. } | Action::Teleport { .. },
+            Motion::Path { .. },
+        ) => key.clone().fail(format!(
+            "names \"{name}\", which keeps to its Path whatever acts on it"
+        )),
+        (Action::Throw { .. } | Action::Impulse { .. }, Motion::Fixed) => key
+            .clone()
+            .fail(format!("names \"{name}\", which is Fixed and never moves")),
         _ => Ok(()),
     }
 }
