@@ -135,7 +135,7 @@ pub fn field_size(
         let hint = "make the ground smaller or seeding_cell_m larger";
         let count = text(triangles);
         over(
-            "solver.seeding_cell_m",
+            "terrain.ground",
             count,
             "seeding triangles",
             SEEDING_TRIANGLES,
@@ -156,7 +156,7 @@ pub fn field_size(
     let tiles = product(x, z);
     let tiles = within(tiles, TILES).ok_or_else(|| {
         over(
-            "solver.tile_m",
+            "terrain.ground",
             text(tiles),
             "tiles",
             TILES,
@@ -287,7 +287,7 @@ mod tests {
         };
         let text = what(&flat([8000.0, 8000.0], 10.0), &grass, &fine);
         assert!(
-            text.starts_with("solver.seeding_cell_m") && text.contains("4294967296"),
+            text.contains("seeding triangles") && text.contains("4294967296"),
             "{text}"
         );
         let text = what(&flat([8000.0, 8000.0], 1.0), &grass, &solver);

@@ -48,6 +48,26 @@ pub(super) fn explain(file: &str, source: &str, error: &SpannedError) -> SceneEr
             &around.path,
             unknown("choice", found, expected),
         ),
+        Error::ExpectedDifferentLength { expected, found } => {
+            let group = positions.group_around(offset);
+            // The reader says "an array of length 3".
+            let wanted = expected.rsplit(' ').next().unwrap_or(expected);
+            let what = format!("holds {found} values; write {wanted}");
+            fail(group.position, &group.path, what)
+        }
+        Error::ExpectedMapColon => {
+            let group = positions.group_around(offset);
+            let key = join(&group.path, around.word.unwrap_or("?"));
+            fail(
+                end,
+                &key,
+                "a colon between key and value belongs here".to_owned(),
+            )
+        }
+        Error::TrailingCharacters => {
+            let what = "is followed by more text; a file holds one scene in one pair of brackets";
+            fail(start, "", what.to_owned())
+        }
         code => match expectation(code) {
             Some(wanted) => fail(
                 around.position,
@@ -79,12 +99,6 @@ fn expectation(code: &Error) -> Option<String> {
         Error::ExpectedDifferentStructName { expected, .. } => {
             format!("write {expected}( … ), or only ( … )")
         }
-        Error::ExpectedDifferentLength { expected, .. } => {
-            format!(
-                "write {}",
-                expected.replace("an array of length", "a vector of as many numbers as")
-            )
-        }
         Error::InvalidValueForType { expected, .. } => format!("write {expected}"),
         Error::Message(message) => message.clone(),
         _ => return None,
@@ -115,7 +129,6 @@ fn bracket_problem(
             return fail(start, &group.path, what);
         }
         Error::ExpectedComma => "a comma or a closing bracket belongs here",
-        Error::ExpectedMapColon => "a colon between key and value belongs here",
         Error::ExpectedArrayEnd => "`]` belongs here",
         Error::ExpectedMapEnd => "`}` belongs here",
         Error::ExpectedStringEnd => "the text that begins here has no closing double quote",
@@ -124,9 +137,6 @@ fn bracket_problem(
             "the name of a key belongs here; a body or a wind in an action stands in one pair of brackets: Spawn(name: …)"
         }
         Error::Eof => "the text ends in the middle of the scene; close its brackets",
-        Error::TrailingCharacters => {
-            "there is more text behind the scene; a file holds one scene in one pair of brackets"
-        }
         Error::ExceededRecursionLimit => "brackets are nested too deeply for a scene",
         other => {
             return fail(
