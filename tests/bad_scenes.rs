@@ -51,7 +51,7 @@ fn text_that_is_no_scene() {
         "(solver: (root: triple))" => "1:17" "solver.root": "`triple`", "double, paper";
         "(duration_s: 3" => "1:15" "duration_s": "closing bracket";
         "(duration_s: 3) more" => "1:16" "scene": "more text", "one scene";
-        "(duration_s 3)" => "1:13" "duration_s": "a colon";
+        "(duration_s 3)" => "1:13" "duration_s": "no colon";
         "(duration_s: 3 wind: ())" => "1:16" "wind": "a comma";
         "(description: \"never closed)" => "1:15" "description": "no closing double quote";
         "(duration_s: 3 /* open )" => "1:25" "scene": "closing `*/`";
