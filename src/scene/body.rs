@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::limits;
+
 /// A rigid body of the scene.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -12,29 +14,35 @@ pub struct Body {
     pub shape: Shape,
     /// Position of the body's origin, in metres.
     #[serde(default)]
+    #[schemars(inner(range(min = limits::PLACE.min, max = limits::PLACE.max)))]
     pub position_m: [f64; 3],
     /// If true, `position_m`'s y counts from the ground under it instead of from 0.
     #[serde(default)]
     pub above_ground: bool,
     /// Turns about x, then y, then z of the world, in degrees.
     #[serde(default)]
+    #[schemars(inner(range(min = limits::ANGLE.min, max = limits::ANGLE.max)))]
     pub rotation_deg: [f32; 3],
     #[serde(default)]
     pub motion: Motion,
     #[serde(default)]
     pub mass: Mass,
     #[serde(default = "default_friction")]
+    #[schemars(range(min = limits::FRICTION.min, max = limits::FRICTION.max))]
     pub friction: f32,
     #[serde(default)]
+    #[schemars(range(min = limits::FRACTION.min, max = limits::FRACTION.max))]
     pub restitution: f32,
     /// Fraction of the velocity lost per second, linear and angular.
     #[serde(default)]
+    #[schemars(inner(range(min = limits::DAMPING.min, max = limits::DAMPING.max)))]
     pub damping: [f32; 2],
     /// How the grass feels the body.
     #[serde(default)]
     pub collider: Collider,
     /// Colour, linear RGB in 0…1.
     #[serde(default = "default_rgb")]
+    #[schemars(inner(range(min = limits::FRACTION.min, max = limits::FRACTION.max)))]
     pub rgb: [f32; 3],
 }
 
@@ -51,25 +59,32 @@ fn default_rgb() -> [f32; 3] {
 #[serde(deny_unknown_fields)]
 pub enum Shape {
     Ball {
+        #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         radius_m: f32,
     },
     Box {
         /// Full extents along x, y, z.
+        #[schemars(inner(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max)))]
         size_m: [f32; 3],
     },
     /// Axis along y.
     Capsule {
+        #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         radius_m: f32,
         /// Length of the straight part, without the two caps.
+        #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         length_m: f32,
     },
     /// Axis along y.
     Cylinder {
+        #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         radius_m: f32,
+        #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         height_m: f32,
     },
     /// The convex hull of at least four points that do not lie in one plane.
     ConvexHull {
+        #[schemars(length(min = limits::HULL_POINTS[0], max = limits::HULL_POINTS[1]))]
         points_m: Vec<[f32; 3]>,
     },
     /// A triangle mesh from an OBJ, glTF or GLB file, split into convex parts for physics and
@@ -78,20 +93,26 @@ pub enum Shape {
         /// Path, looked up in the scene's folder and then in the asset folders.
         file: String,
         #[serde(default = "unit_scale")]
+        #[schemars(range(min = limits::MESH_SCALE.min, max = limits::MESH_SCALE.max))]
         scale: f32,
         /// Most convex parts the mesh may be split into.
         #[serde(default = "default_max_parts")]
+        #[schemars(range(min = limits::MESH_PARTS.min, max = limits::MESH_PARTS.max))]
         max_parts: u32,
     },
     /// Several rigidly joined shapes; no meshes, vehicles or compounds inside.
     Compound {
+        #[schemars(length(min = 1, max = limits::COMPOUND_PARTS))]
         parts: Vec<Part>,
     },
     /// A chassis on four ray-cast wheels; +z is ahead.
     Vehicle {
         /// Full extents of the chassis along x, y, z.
+        #[schemars(inner(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max)))]
         chassis_m: [f32; 3],
+        #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         wheel_radius_m: f32,
+        #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         wheel_width_m: f32,
     },
 }
@@ -112,6 +133,7 @@ pub struct Part {
     #[serde(default)]
     pub position_m: [f32; 3],
     #[serde(default)]
+    #[schemars(inner(range(min = limits::ANGLE.min, max = limits::ANGLE.max)))]
     pub rotation_deg: [f32; 3],
 }
 
@@ -124,14 +146,17 @@ pub enum Motion {
     Free,
     /// As `Free`, with a velocity at the start.
     Thrown {
+        #[schemars(inner(range(min = limits::VELOCITY.min, max = limits::VELOCITY.max)))]
         velocity_m_per_s: [f32; 3],
         #[serde(default)]
+        #[schemars(inner(range(min = limits::SPIN.min, max = limits::SPIN.max)))]
         spin_deg_per_s: [f32; 3],
     },
     /// Never moves.
     Fixed,
     /// Follows way points by time, whatever stands in its way; smooth in between.
     Path {
+        #[schemars(length(min = 2, max = limits::WAYPOINTS))]
         waypoints: Vec<Waypoint>,
         /// Start again after the last way point.
         #[serde(default)]
@@ -146,8 +171,10 @@ pub struct Waypoint {
     /// Seconds since the start of the scene, rising along the path.
     pub at_s: f64,
     /// Place of the body's origin; y counts from the ground if the body says `above_ground`.
+    #[schemars(inner(range(min = limits::PLACE.min, max = limits::PLACE.max)))]
     pub position_m: [f64; 3],
     #[serde(default)]
+    #[schemars(inner(range(min = limits::ANGLE.min, max = limits::ANGLE.max)))]
     pub rotation_deg: [f32; 3],
 }
 

@@ -6,6 +6,11 @@
 use super::limits::{HEIGHT_SAMPLES, PLANTS, PLANTS_PER_TILE, SEEDING_TRIANGLES, TILES};
 use super::{Grass, Ground, Solver};
 
+/// Most halvings of the height samples' spacing.
+const MOST_HALVINGS: u32 = 12;
+/// Sides a few roundings apart count as equal.
+const ROUNDING: f32 = 1.000_001;
+
 /// Counts that follow from ground, grass and solver settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldSize {
@@ -13,7 +18,7 @@ pub struct FieldSize {
     pub samples: [u64; 2],
     /// Extent along x and z, in metres.
     pub size_m: [f64; 2],
-    pub seeding_cell_m: f64,
+    pub seeding_cell_m: f32,
     /// Two for every seeding cell.
     pub seeding_triangles: u64,
     /// Seeding cells along a tile's side: 1, 2 or 4.
@@ -41,24 +46,22 @@ pub fn squares_along(size_m: f32, spacing_m: f32) -> u64 {
     (exact * (1.0 - 1e-6)).ceil().max(1.0) as u64
 }
 
-/// Seeding cells along a height sample's spacing: the power of two that makes a cell no longer
-/// than wished.
-pub fn cells_per_square(spacing_m: f32, wished_cell_m: f32) -> u32 {
-    let mut cells = 1;
-    while cells < 1 << 20 && spacing_m / cells as f32 > wished_cell_m {
-        cells *= 2;
-    }
-    cells
+/// Seeding cells along a height sample's spacing: the power of two, up to 2^12, that makes a cell
+/// no longer than wished; `None` if none does.
+pub fn cells_per_square(spacing_m: f32, wished_cell_m: f32) -> Option<u32> {
+    let longest = wished_cell_m * ROUNDING;
+    (0..=MOST_HALVINGS)
+        .map(|halvings| 1_u32 << halvings)
+        .find(|&cells| spacing_m / cells as f32 <= longest)
 }
 
-/// Seeding cells along a tile's side: 1, 2 or 4, whichever is nearest to the wish; `None` if the
-/// wish is nearer to 8.
-pub fn tile_cells(wished_tile_m: f32, cell_m: f64) -> Option<u32> {
-    let ratio = f64::from(wished_tile_m) / cell_m;
-    match ratio {
-        _ if ratio < 1.5 => Some(1),
-        _ if ratio < 3.0 => Some(2),
-        _ if ratio <= 6.0 => Some(4),
+/// Seeding cells along a tile's side: the largest of 1, 2 and 4 that makes a tile no longer than
+/// wished, or 1; `None` if 8 would still be no longer.
+pub fn tile_cells(wished_tile_m: f32, cell_m: f32) -> Option<u32> {
+    match wished_tile_m * ROUNDING / cell_m {
+        ratio if ratio < 2.0 => Some(1),
+        ratio if ratio < 4.0 => Some(2),
+        ratio if ratio < 8.0 => Some(4),
         _ => None,
     }
 }
@@ -115,15 +118,24 @@ pub fn field_size(
     })?;
 
     let spacing = spacing_m(ground);
-    let per_square = cells_per_square(spacing, solver.seeding_cell_m);
-    let cell_m = f64::from(spacing) / f64::from(per_square);
+    let wished = solver.seeding_cell_m;
+    let per_square = cells_per_square(spacing, wished).ok_or_else(|| OverBudget {
+        key: "solver.seeding_cell_m",
+        what: format!(
+            "is {wished} m, but the ground's spacing_m of {spacing} m can be halved {MOST_HALVINGS} \
+             times at most; write at least {} m",
+            spacing / (1 << MOST_HALVINGS) as f32
+        ),
+    })?;
+    // A division by a power of two is exact.
+    let cell_m = spacing / per_square as f32;
     let cells = samples.map(|n| n.saturating_sub(1).saturating_mul(per_square.into()));
     let triangles = product(cells[0], cells[1]).and_then(|c| product(c, 2));
     let triangles = within(triangles, SEEDING_TRIANGLES).ok_or_else(|| {
         let hint = "make the ground smaller or seeding_cell_m larger";
         let count = text(triangles);
         over(
-            "solver.seeding_cell_m",
+            "terrain.ground",
             count,
             "seeding triangles",
             SEEDING_TRIANGLES,
@@ -134,8 +146,8 @@ pub fn field_size(
     let tile_cells = tile_cells(solver.tile_m, cell_m).ok_or_else(|| OverBudget {
         key: "solver.tile_m",
         what: format!(
-            "is {} m, but a tile is 1, 2 or 4 seeding cells of {cell_m} m; write at most {} m, or a \
-             larger seeding_cell_m that the ground's spacing_m of {spacing} m allows",
+            "is {} m, but a tile is 1, 2 or 4 seeding cells of {cell_m} m; write {} m, or make the \
+             ground's spacing_m of {spacing} m larger",
             solver.tile_m,
             4.0 * cell_m
         ),
@@ -144,7 +156,7 @@ pub fn field_size(
     let tiles = product(x, z);
     let tiles = within(tiles, TILES).ok_or_else(|| {
         over(
-            "solver.tile_m",
+            "terrain.ground",
             text(tiles),
             "tiles",
             TILES,
@@ -158,7 +170,7 @@ pub fn field_size(
     } else {
         0.0
     };
-    let per_triangle = density * cell_m * cell_m / 2.0;
+    let per_triangle = 0.5 * density * f64::from(cell_m).powi(2);
     // A triangle rounds its number of plants up or down by chance.
     let most = per_triangle.ceil() as u64;
     let per_tile = product(most, 2 * u64::from(tile_cells * tile_cells));
@@ -239,14 +251,20 @@ mod tests {
 
     #[test]
     fn cells_and_tiles() {
-        assert_eq!(cells_per_square(5.0, 0.5), 16);
-        assert_eq!(cells_per_square(0.5, 0.5), 1);
-        assert_eq!(cells_per_square(0.2, 0.5), 1);
-        let wishes = [(0.1, 1), (0.5, 1), (1.0, 2), (1.9, 4), (2.0, 4), (3.0, 4)];
+        for (spacing, cells) in [
+            (5.0, Some(16)),
+            (0.5, Some(1)),
+            (0.2, Some(1)),
+            (2049.0, None),
+        ] {
+            assert_eq!(cells_per_square(spacing, 0.5), cells, "{spacing}");
+        }
+        assert_eq!(cells_per_square(0.7 * 4.0, 0.7), Some(4));
+        let wishes = [(0.1, 1), (0.5, 1), (1.0, 2), (1.9, 2), (2.0, 4), (3.9, 4)];
         for (wish, cells) in wishes {
             assert_eq!(tile_cells(wish, 0.5), Some(cells), "{wish}");
         }
-        assert_eq!(tile_cells(3.1, 0.5), None);
+        assert_eq!(tile_cells(4.0, 0.5), None);
     }
 
     #[test]
@@ -269,7 +287,7 @@ mod tests {
         };
         let text = what(&flat([8000.0, 8000.0], 10.0), &grass, &fine);
         assert!(
-            text.starts_with("solver.seeding_cell_m") && text.contains("4294967296"),
+            text.contains("seeding triangles") && text.contains("4294967296"),
             "{text}"
         );
         let text = what(&flat([8000.0, 8000.0], 1.0), &grass, &solver);

@@ -48,6 +48,7 @@ pub struct Scene {
     /// What the scene shows and what it checks, in a sentence or two.
     pub description: String,
     /// Simulated length of a headless run, in seconds.
+    #[schemars(range(min = limits::DURATION.min, max = limits::DURATION.max))]
     pub duration_s: f64,
     pub terrain: Terrain,
     pub grass: Grass,

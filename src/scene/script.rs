@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Body, Wind};
+use super::{Body, Wind, limits};
 
 /// Something that happens at a given time.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
@@ -25,30 +25,38 @@ pub enum Action {
     /// Sets position and velocity at once; nothing in between is touched.
     Teleport {
         body: String,
+        #[schemars(inner(range(min = limits::PLACE.min, max = limits::PLACE.max)))]
         position_m: [f64; 3],
         #[serde(default)]
+        #[schemars(inner(range(min = limits::VELOCITY.min, max = limits::VELOCITY.max)))]
         velocity_m_per_s: [f32; 3],
     },
     /// Sets the velocity.
     Throw {
         body: String,
+        #[schemars(inner(range(min = limits::VELOCITY.min, max = limits::VELOCITY.max)))]
         velocity_m_per_s: [f32; 3],
         #[serde(default)]
+        #[schemars(inner(range(min = limits::SPIN.min, max = limits::SPIN.max)))]
         spin_deg_per_s: [f32; 3],
     },
     /// Adds momentum, in kilogram metres per second.
     Impulse {
         body: String,
+        #[schemars(inner(range(min = limits::IMPULSE.min, max = limits::IMPULSE.max)))]
         impulse_kg_m_per_s: [f32; 3],
     },
     /// Sets a vehicle's controls until the next `Drive`.
     Drive {
         body: String,
         /// Engine force over the four wheels, in newtons; negative drives backwards.
+        #[schemars(range(min = limits::ENGINE_FORCE.min, max = limits::ENGINE_FORCE.max))]
         engine_n: f32,
         #[serde(default)]
+        #[schemars(range(min = limits::STEER.min, max = limits::STEER.max))]
         steer_deg: f32,
         #[serde(default)]
+        #[schemars(range(min = limits::BRAKE_FORCE.min, max = limits::BRAKE_FORCE.max))]
         brake_n: f32,
     },
     /// Replaces the wind.

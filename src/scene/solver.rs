@@ -3,32 +3,46 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::limits;
+
 /// Settings of the simulation.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Solver {
     /// Length of a sub-step, in seconds, whatever the frame rate.
+    #[schemars(range(min = limits::SUBSTEP.min, max = limits::SUBSTEP.max))]
     pub substep_s: f64,
     /// Time from the last contact to the wind pose, T of O09 section 5.5, in seconds.
+    #[schemars(range(min = limits::RECOVERY.min, max = limits::RECOVERY.max))]
     pub recovery_s: f64,
     /// Segments of a simulated blade, 1 to 16.
+    #[schemars(range(min = limits::SEGMENTS.min, max = limits::SEGMENTS.max))]
     pub segments: u32,
     /// Texels along an edge of a depth-cube face, 8 to 256.
+    #[schemars(range(min = limits::CUBE_RESOLUTION.min, max = limits::CUBE_RESOLUTION.max))]
     pub cube_resolution: u32,
     /// The grass keeps this far from a body, in metres.
+    #[schemars(range(min = limits::SKIN.min, max = limits::SKIN.max))]
     pub skin_m: f32,
     /// Rate of the bend springs, κ, per second.
+    #[schemars(range(min = limits::SPRING_RATE.min, max = limits::SPRING_RATE.max))]
     pub spring_rate_per_s: f32,
     /// Fewest and most rounds of lengths, springs and push-out in a sub-step.
+    #[schemars(inner(range(min = limits::ROUNDS.min, max = limits::ROUNDS.max)))]
     pub rounds: [u32; 2],
     /// Rounds end early once no segment is strained by more than this share.
+    #[schemars(range(min = limits::STRAIN_LIMIT.min, max = limits::STRAIN_LIMIT.max))]
     pub strain_limit: f32,
     /// Most pieces a sub-step is cut into for a fast body; reaching it is reported.
+    #[schemars(range(min = limits::SWEEPS.min, max = limits::SWEEPS.max))]
     pub max_sweeps: u32,
-    /// Wished side of a tile, in metres; the nearest whole number of seeding cells is taken.
+    /// Wished side of a tile, in metres: the largest of 1, 2 and 4 seeding cells that is not longer
+    /// is taken, or 1. Refused where 8 would not be longer.
+    #[schemars(range(min = limits::TILE_SIDE.min, max = limits::TILE_SIDE.max))]
     pub tile_m: f32,
     /// Wished side of a seeding cell (two seeding triangles), in metres; the height samples'
-    /// spacing is halved until it is not longer.
+    /// spacing is halved until it is not longer, 12 times at most.
+    #[schemars(range(min = limits::SEEDING_CELL.min, max = limits::SEEDING_CELL.max))]
     pub seeding_cell_m: f32,
     pub philox: PhiloxRounds,
     pub root: Root,

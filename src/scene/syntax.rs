@@ -5,57 +5,139 @@ use ron::error::{Error, SpannedError};
 use super::error::{Problem, SceneError};
 use super::positions::{Place, Position, Positions};
 
+/// Where the RON reader stopped.
+struct Stop<'a> {
+    positions: Positions<'a>,
+    /// The reader's place before and behind what it could not take.
+    start: Position,
+    end: Position,
+    /// The innermost value around the start, and the innermost one in brackets.
+    value: Place<'a>,
+    group: Place<'a>,
+}
+
+/// Place, key and sentence of an error.
+type Explanation = (Position, String, String);
+
 /// Turns the RON reader's error into one that names file, place and key.
 pub(super) fn explain(file: &str, source: &str, error: &SpannedError) -> SceneError {
     let positions = Positions::scan(source);
-    let place_of = |p: ron::error::Position| Position {
+    let [start, end] = [error.span.start, error.span.end].map(|p| Position {
         line: u32::try_from(p.line).unwrap_or(u32::MAX),
         column: u32::try_from(p.col).unwrap_or(u32::MAX),
-    };
-    let (start, end) = (place_of(error.span.start), place_of(error.span.end));
+    });
     let offset = positions.offset(start);
-    let fail = |position, key: &str, what: String| {
-        SceneError::new(file, position, key, Problem::Syntax(what))
+    let stop = Stop {
+        value: positions.around(offset),
+        group: positions.group_around(offset),
+        positions,
+        start,
+        end,
     };
-    let around = positions.around(offset);
-    match &error.code {
-        Error::NoSuchStructField {
-            expected, found, ..
-        } => {
-            let group = positions.group_around(offset);
-            fail(
-                start,
-                &join(&group.path, found),
-                unknown("key", found, expected),
-            )
-        }
-        Error::MissingStructField { field, .. } => {
-            // The reader stands behind the closing bracket; one character back is inside it.
-            let inside = positions.offset(end).saturating_sub(1);
-            let group = positions.group_around(positions.offset(start).min(inside));
-            let what = "is missing and has no default; add it here".to_owned();
-            fail(group.position, &join(&group.path, field), what)
-        }
-        Error::DuplicateStructField { field, .. } => {
-            let group = positions.group_around(offset);
-            let what = "is given twice; keep one of the two".to_owned();
-            fail(start, &join(&group.path, field), what)
-        }
-        Error::NoSuchEnumVariant {
-            expected, found, ..
-        } => fail(
-            around.position,
-            &around.path,
-            unknown("choice", found, expected),
-        ),
-        code => match expectation(code) {
-            Some(wanted) => fail(
-                around.position,
-                &around.path,
-                format!("{}; {wanted}", is(&around)),
+    let (position, key, what) = stop
+        .wrong_key(&error.code)
+        .or_else(|| stop.wrong_value(&error.code))
+        .unwrap_or_else(|| stop.wrong_mark(&error.code));
+    SceneError::new(file, position, &key, Problem::Syntax(what))
+}
+
+impl Stop<'_> {
+    /// A key or variant that is unknown, missing, or there twice.
+    fn wrong_key(&self, code: &Error) -> Option<Explanation> {
+        let in_group = |field: &str| join(&self.group.path, field);
+        Some(match code {
+            Error::NoSuchStructField {
+                expected, found, ..
+            } => (self.start, in_group(found), unknown("key", found, expected)),
+            Error::DuplicateStructField { field, .. } => {
+                let what = "is given twice; keep one of the two";
+                (self.start, in_group(field), what.to_owned())
+            }
+            Error::MissingStructField { field, .. } => {
+                // The reader may stand behind the closing bracket; one character back is inside.
+                let [start, end] = [self.start, self.end].map(|p| self.positions.offset(p));
+                let group = self
+                    .positions
+                    .group_around(start.min(end.saturating_sub(1)));
+                let what = "is missing and has no default; add it here";
+                (group.position, join(&group.path, field), what.to_owned())
+            }
+            Error::NoSuchEnumVariant {
+                expected, found, ..
+            } => self.at_value(unknown("choice", found, expected)),
+            Error::ExpectedMapColon => {
+                let key = in_group(self.value.word.unwrap_or("?"));
+                (self.end, key, "has no colon before its value".to_owned())
+            }
+            _ => return None,
+        })
+    }
+
+    /// A value of the wrong type or length.
+    fn wrong_value(&self, code: &Error) -> Option<Explanation> {
+        let in_a_number = self.value.position < self.start
+            && self
+                .value
+                .word
+                .is_some_and(|w| w.starts_with(|c: char| c.is_ascii_digit() || c == '-'));
+        Some(match code {
+            // The reader took `4` of `4.5` for the whole number it looked for.
+            Error::ExpectedComma if in_a_number => {
+                self.at_value(format!("{}; write a whole number", is(&self.value)))
+            }
+            Error::ExpectedDifferentLength { expected, found } => {
+                // The reader says "an array of length 3".
+                let wanted = expected.rsplit(' ').next().unwrap_or(expected);
+                let what = format!("holds {found} values; write {wanted}");
+                (self.group.position, self.group.path.clone(), what)
+            }
+            Error::ExpectedStructLikeEnd => {
+                let what = "has more values than it takes; `)` belongs here";
+                (self.start, self.group.path.clone(), what.to_owned())
+            }
+            code => {
+                let wanted = expectation(code)?;
+                self.at_value(format!("{}; {wanted}", is(&self.value)))
+            }
+        })
+    }
+
+    /// A comma, bracket or quote that is missing or too many.
+    fn wrong_mark(&self, code: &Error) -> Explanation {
+        let (position, what) = match code {
+            Error::TrailingCharacters => {
+                let what =
+                    "is followed by more text; a file holds one scene in one pair of brackets";
+                return (self.start, String::new(), what.to_owned());
+            }
+            Error::ExpectedStringEnd => (
+                self.start,
+                "the text that begins here has no closing double quote",
             ),
-            None => bracket_problem(code, &positions, &around, [start, end], &fail),
-        },
+            Error::ExpectedComma => (self.end, "a comma or a closing bracket belongs here"),
+            Error::ExpectedArrayEnd => (self.end, "`]` belongs here"),
+            Error::ExpectedMapEnd => (self.end, "`}` belongs here"),
+            Error::UnclosedBlockComment => (self.end, "a comment has no closing `*/`"),
+            Error::ExpectedIdentifier => (
+                self.end,
+                "a key belongs here; what an action holds stands in one pair of brackets, as in \
+                 Spawn(name: …)",
+            ),
+            Error::Eof => (
+                self.end,
+                "the text ends within the scene; close its brackets",
+            ),
+            Error::ExceededRecursionLimit => (self.end, "brackets are nested too deeply"),
+            other => {
+                let what = format!("this is no valid RON ({other})");
+                return (self.end, self.value.path.clone(), what);
+            }
+        };
+        (position, self.value.path.clone(), what.to_owned())
+    }
+
+    fn at_value(&self, what: String) -> Explanation {
+        (self.value.position, self.value.path.clone(), what)
     }
 }
 
@@ -79,69 +161,10 @@ fn expectation(code: &Error) -> Option<String> {
         Error::ExpectedDifferentStructName { expected, .. } => {
             format!("write {expected}( … ), or only ( … )")
         }
-        Error::ExpectedDifferentLength { expected, .. } => {
-            format!(
-                "write {}",
-                expected.replace("an array of length", "a vector of as many numbers as")
-            )
-        }
         Error::InvalidValueForType { expected, .. } => format!("write {expected}"),
         Error::Message(message) => message.clone(),
         _ => return None,
     })
-}
-
-/// A comma, bracket or quote that is missing or too many.
-fn bracket_problem(
-    code: &Error,
-    positions: &Positions<'_>,
-    around: &Place<'_>,
-    [start, end]: [Position; 2],
-    fail: &dyn Fn(Position, &str, String) -> SceneError,
-) -> SceneError {
-    let inside_a_number = around.position < start
-        && around
-            .word
-            .is_some_and(|w| w.starts_with(|c: char| c.is_ascii_digit() || c == '-'));
-    let what = match code {
-        // The reader took `4` of `4.5` for the whole number it looked for.
-        Error::ExpectedComma if inside_a_number => {
-            let what = format!("{}; write a whole number", is(around));
-            return fail(around.position, &around.path, what);
-        }
-        Error::ExpectedStructLikeEnd => {
-            let group = positions.group_around(positions.offset(start));
-            let what = "has more values than it takes; `)` belongs here".to_owned();
-            return fail(start, &group.path, what);
-        }
-        Error::ExpectedComma => "a comma or a closing bracket belongs here",
-        Error::ExpectedMapColon => "a colon between key and value belongs here",
-        Error::ExpectedArrayEnd => "`]` belongs here",
-        Error::ExpectedMapEnd => "`}` belongs here",
-        Error::ExpectedStringEnd => "the text that begins here has no closing double quote",
-        Error::UnclosedBlockComment => "the comment has no closing `*/`",
-        Error::ExpectedIdentifier => {
-            "the name of a key belongs here; a body or a wind in an action stands in one pair of brackets: Spawn(name: …)"
-        }
-        Error::Eof => "the text ends in the middle of the scene; close its brackets",
-        Error::TrailingCharacters => {
-            "there is more text behind the scene; a file holds one scene in one pair of brackets"
-        }
-        Error::ExceededRecursionLimit => "brackets are nested too deeply for a scene",
-        other => {
-            return fail(
-                end,
-                &around.path,
-                format!("this is not valid RON ({other})"),
-            );
-        }
-    };
-    let at = if matches!(code, Error::ExpectedStringEnd) {
-        start
-    } else {
-        end
-    };
-    fail(at, &around.path, what.to_owned())
 }
 
 fn is(place: &Place<'_>) -> String {

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::limits;
+
 /// The ground of a scene. It is centred on x = z = 0; heights are along +y.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
@@ -10,10 +12,14 @@ pub struct Terrain {
     pub ground: Ground,
     /// Colours of the base map, linear RGB in 0…1: lush, dry, bare soil. A plant takes the colour
     /// of the ground under it.
+    #[schemars(inner(range(min = limits::FRACTION.min, max = limits::FRACTION.max)))]
     pub lush_rgb: [f32; 3],
+    #[schemars(inner(range(min = limits::FRACTION.min, max = limits::FRACTION.max)))]
     pub dry_rgb: [f32; 3],
+    #[schemars(inner(range(min = limits::FRACTION.min, max = limits::FRACTION.max)))]
     pub soil_rgb: [f32; 3],
     /// Friction coefficient of the ground, 0 or more.
+    #[schemars(range(min = limits::FRICTION.min, max = limits::FRICTION.max))]
     pub friction: f32,
 }
 
@@ -36,21 +42,28 @@ pub enum Ground {
     /// A plane at height 0.
     Flat {
         /// Extent along x and z, in metres; rounded up to whole spacings.
+        #[schemars(inner(range(min = limits::TERRAIN_SIDE.min, max = limits::TERRAIN_SIDE.max)))]
         size_m: [f32; 2],
         /// Distance of the height samples, in metres.
         #[serde(default = "one_metre")]
+        #[schemars(range(min = limits::HEIGHT_SPACING.min, max = limits::HEIGHT_SPACING.max))]
         spacing_m: f32,
     },
     /// Smooth rolling ground from value noise, `octaves` of it, each half as high and half as long.
     Rolling {
+        #[schemars(inner(range(min = limits::TERRAIN_SIDE.min, max = limits::TERRAIN_SIDE.max)))]
         size_m: [f32; 2],
         #[serde(default = "one_metre")]
+        #[schemars(range(min = limits::HEIGHT_SPACING.min, max = limits::HEIGHT_SPACING.max))]
         spacing_m: f32,
         /// Half the height range of the first octave, in metres.
+        #[schemars(range(min = limits::AMPLITUDE.min, max = limits::AMPLITUDE.max))]
         amplitude_m: f32,
         /// Wavelength of the first octave, in metres.
+        #[schemars(range(min = limits::WAVELENGTH.min, max = limits::WAVELENGTH.max))]
         wavelength_m: f32,
         #[serde(default = "three_octaves")]
+        #[schemars(range(min = limits::OCTAVES.min, max = limits::OCTAVES.max))]
         octaves: u32,
         #[serde(default)]
         seed: u32,
@@ -59,8 +72,10 @@ pub enum Ground {
     HeightMap {
         /// Path, looked up in the scene's folder and then in the asset folders.
         file: String,
+        #[schemars(range(min = limits::HEIGHT_SPACING.min, max = limits::HEIGHT_SPACING.max))]
         spacing_m: f32,
         /// Height of white above black, in metres.
+        #[schemars(range(min = limits::HEIGHT.min, max = limits::HEIGHT.max))]
         height_m: f32,
     },
 }

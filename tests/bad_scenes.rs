@@ -1,0 +1,359 @@
+//! Scenes and assets that are wrong: each is refused with a sentence that names file, line,
+//! column, key and what would be right, and none makes the program panic or take much memory.
+
+use std::fs;
+use std::path::PathBuf;
+
+use proptest::prelude::*;
+use sward::scene::assets::{Embedded, read_height_map, read_mesh};
+use sward::scene::{load_scene, parse_scene, parse_scene_with, to_ron};
+
+/// What is wrong with the answer to a wrong scene, if anything: its error must stand at `place`,
+/// name `key`, say every one of `words`, and be one line.
+fn flaw(source: &str, place: &str, key: &str, words: &[&str]) -> Option<String> {
+    let text = match parse_scene("bad", source, &[]) {
+        Ok(_) => "no error".to_owned(),
+        Err(error) => error.to_string(),
+    };
+    let head = format!("bad:{place}: {key}: ");
+    let says_all = words.iter().all(|word| text.contains(word));
+    let right = text.starts_with(&head) && says_all && !text.contains('\n');
+    (!right).then(|| format!("{source}\n  wanted {head}… {words:?}\n  got    {text}"))
+}
+
+/// A table of `scene => place key: words;`.
+macro_rules! check {
+    ($($source:expr => $place:literal $key:literal: $($word:literal),+;)+) => {
+        let flaws: Vec<String> =
+            [$(flaw($source, $place, $key, &[$($word),+])),+].into_iter().flatten().collect();
+        assert!(flaws.is_empty(), "\n{}", flaws.join("\n"));
+    };
+}
+
+/// A scene with one body that has these keys, on the second line.
+macro_rules! body {
+    ($keys:literal) => {
+        concat!("(bodies: [\n(name: \"a\", ", $keys, ")])")
+    };
+}
+
+#[test]
+fn text_that_is_no_scene() {
+    check! {
+        "" => "1:1" "scene": "round brackets";
+        "(duration: 3)" => "1:2" "duration": "no known key", "did you mean duration_s?", "terrain";
+        "(\n grass: (\n  colour: 3))" => "3:3" "grass.colour": "no known key", "density_per_m2";
+        body!("shape: Ball(radius: 3)") => "2:25" "bodies[0].shape.radius": "did you mean radius_m?";
+        "(bodies: [\n (name: \"a\")])" => "2:2" "bodies[0].shape": "is missing";
+        body!("shape: Ball()") => "2:20" "bodies[0].shape.radius_m": "is missing";
+        body!("name: \"b\"") => "2:13" "bodies[0].name": "twice";
+        body!("shape: Bal(radius_m: 1)") => "2:20" "bodies[0].shape": "did you mean Ball?", "Vehicle";
+        "(solver: (root: triple))" => "1:17" "solver.root": "`triple`", "double, paper";
+        "(duration_s: 3" => "1:15" "duration_s": "closing bracket";
+        "(duration_s: 3) more" => "1:16" "scene": "more text", "one scene";
+        "(duration_s 3)" => "1:13" "duration_s": "no colon";
+        "(duration_s: 3 wind: ())" => "1:16" "wind": "a comma";
+        "(description: \"never closed)" => "1:15" "description": "no closing double quote";
+        "(duration_s: 3 /* open )" => "1:25" "scene": "closing `*/`";
+        "Scenery()" => "1:1" "scene": "Scene( … )";
+    }
+}
+
+#[test]
+fn values_of_the_wrong_type() {
+    check! {
+        "(description: true)" => "1:15" "description": "is true", "double quotes";
+        "(duration_s: \"long\")" => "1:14" "duration_s": "\"long\"", "a number";
+        body!("shape: Ball(radius_m: \"x\")") => "2:35" "bodies[0].shape.radius_m": "\"x\"";
+        body!("shape: Box(size_m: [1, 2, 3])") => "2:32" "bodies[0].shape.size_m": "(x, y, z)";
+        body!("shape: Box(size_m: (1, 2))") => "2:32" "bodies[0].shape.size_m": "holds 2", "write 3";
+        body!("shape: Box(size_m: (1, 2, 3, 4))") => "2:42" "bodies[0].shape.size_m": "more values";
+        body!("shape: Ball(radius_m: 1), above_ground: 1") => "2:53" "bodies[0].above_ground": "true or false";
+        "(bodies: (name: \"a\"))" => "1:10" "bodies": "square brackets";
+        "(solver: (segments: 4.5))" => "1:21" "solver.segments": "4.5", "whole number";
+        "(solver: (segments: -1))" => "1:21" "solver.segments": "-1", "whole number";
+        "(solver: (segments: 5000000000))" => "1:21" "solver.segments": "5000000000";
+        "(expect: [AllRest])" => "1:11" "expect[0]": "round brackets";
+    }
+}
+
+#[test]
+fn numbers_out_of_range() {
+    check! {
+        "(duration_s: NaN)" => "1:14" "duration_s": "NaN", "0.001 to 172800 s";
+        "(duration_s: inf)" => "1:14" "duration_s": "infinite";
+        "(duration_s: 0)" => "1:14" "duration_s": "is 0";
+        "(duration_s: 200000)" => "1:14" "duration_s": "200000", "172800";
+        "(wind: (strength: 1e39))" => "1:19" "wind.strength": "3.4e38", "0 to 10";
+        "(solver: (substep_s: 0.1))" => "1:22" "solver.substep_s": "0.0001 to 0.0666";
+        "(solver: (recovery_s: 0))" => "1:23" "solver.recovery_s": "0.01 to 60 s";
+        "(solver: (segments: 17))" => "1:21" "solver.segments": "1 to 16";
+        "(solver: (cube_resolution: 4))" => "1:28" "solver.cube_resolution": "8 to 256 texels";
+        "(solver: (rounds: (6, 2)))" => "1:19" "solver.rounds": "(6, 2)", "smaller value first";
+        "(solver: (max_sweeps: 0))" => "1:23" "solver.max_sweeps": "1 to 1024";
+        "(grass: (density_per_m2: -1))" => "1:26" "grass.density_per_m2": "is -1", "0 to 10000";
+        "(grass: (species: [(height_m: (0.4, 0.2))]))" => "1:31" "grass.species[0].height_m": "(0.4, 0.2)";
+        "(grass: (species: [(share: 0)]))" => "1:19" "grass.species": "positive share";
+        "(grass: (species: [(name: \"\")]))" => "1:27" "grass.species[0].name": "1 to 64";
+        "(terrain: (lush_rgb: (0, 2, 0)))" => "1:26" "terrain.lush_rgb[1]": "is 2", "0 to 1";
+        "(terrain: (ground: Flat(size_m: (8, 0))))" => "1:37" "terrain.ground.size_m[1]": "is 0";
+    }
+}
+
+#[test]
+fn bodies_that_cannot_be() {
+    check! {
+        body!("shape: Ball(radius_m: -1)") => "2:35" "bodies[0].shape.radius_m": "is -1", "0.001 to 100 m";
+        body!("shape: Ball(radius_m: 1e39)") => "2:35" "bodies[0].shape.radius_m": "3.4e38";
+        body!("shape: Box(size_m: (1, 0, 1))") => "2:36" "bodies[0].shape.size_m[1]": "is 0";
+        body!("shape: Capsule(radius_m: 1, length_m: 0)") => "2:51" "bodies[0].shape.length_m": "is 0";
+        body!("shape: Ball(radius_m: 1), mass: Kilograms(0)") => "2:45" "bodies[0].mass": "is 0", "kg";
+        body!("shape: Ball(radius_m: 1), position_m: (0, NaN, 0)") => "2:55" "bodies[0].position_m[1]": "NaN";
+        body!("shape: ConvexHull(points_m: [(0, 0, 0), (1, 0, 0), (0, 0, 1)])") => "2:41" "bodies[0].shape.points_m": "3 points", "4 to 256";
+        body!("shape: ConvexHull(points_m: [(0, 1, 0), (1, 1, 0), (0, 1, 1), (1, 1, 1)])") => "2:41" "bodies[0].shape.points_m": "one plane", "0.001 m";
+        body!("shape: Compound(parts: [])") => "2:36" "bodies[0].shape.parts": "at least one part";
+        body!("shape: Compound(parts: [(shape: Mesh(file: \"a.obj\"))])") => "2:45" "bodies[0].shape.parts[0].shape": "is a mesh";
+        body!("motion: Fixed, shape: Vehicle(chassis_m: (1, 0.4, 2), wheel_radius_m: 0.3, wheel_width_m: 0.2)") => "2:21" "bodies[0].motion": "Free or Thrown";
+        body!("shape: Vehicle(chassis_m: (1, 0.4, 2), wheel_radius_m: 0.7, wheel_width_m: 0.2)") => "2:68" "bodies[0].shape.wheel_radius_m": "is 0.7", "0.5 m";
+        body!("shape: Ball(radius_m: 1), motion: Path(waypoints: [(at_s: 0, position_m: (0, 0, 0))])") => "2:63" "bodies[0].motion.waypoints": "1 way points", "needs 2";
+        body!("shape: Ball(radius_m: 1), motion: Path(waypoints: [(at_s: 1, position_m: (0, 0, 0)), (at_s: 1, position_m: (1, 0, 0))])") => "2:105" "bodies[0].motion.waypoints[1].at_s": "not after the 1 before it";
+        body!("shape: Ball(radius_m: 1)), (name: \"a\", shape: Ball(radius_m: 2)") => "2:47" "bodies[1].name": "\"a\"", "another body";
+    }
+}
+
+#[test]
+fn scripts_cameras_and_expectations() {
+    check! {
+        "(script: [(at_s: 9, action: SetWind())])" => "1:18" "script[0].at_s": "is 9", "0 to 4 s";
+        "(script: [(at_s: 1, action: Remove(body: \"x\"))])" => "1:42" "script[0].action.body": "\"x\"", "no bodies";
+        "(script: [\n(at_s: 2, action: Spawn(name: \"x\", shape: Ball(radius_m: 1))),\n(at_s: 1, action: Remove(body: \"x\"))])" => "3:32" "script[1].action.body": "before it is spawned";
+        "(script: [\n(at_s: 1, action: Spawn(name: \"x\", shape: Ball(radius_m: 1))),\n(at_s: 2, action: Remove(body: \"x\")), (at_s: 3, action: Remove(body: \"x\"))])" => "3:70" "script[2].action.body": "removal at 2 s";
+        "(script: [(at_s: 1, action: Spawn(name: \"x\", shape: Ball(radius_m: 0)))])" => "1:68" "script[0].action.shape.radius_m": "is 0";
+        "(script: [(at_s: 1, action: Spawn((name: \"x\")))])" => "1:35" "script[0].action": "one pair of brackets";
+        "(bodies: [(name: \"x\", shape: Ball(radius_m: 1))], script: [(at_s: 1, action: Drive(body: \"x\", engine_n: 1))])" => "1:90" "script[0].action.body": "no Vehicle";
+        "(bodies: [(name: \"x\", shape: Ball(radius_m: 1), motion: Fixed)], script: [(at_s: 1, action: Throw(body: \"x\", velocity_m_per_s: (1, 0, 0)))])" => "1:105" "script[0].action.body": "never moves";
+        "(cameras: [(name: \"c\", eye_m: (1, 1, 1), target_m: (1, 1, 1))])" => "1:52" "cameras[0].target_m": "needs a direction";
+        "(cameras: [(name: \"c\", eye_m: (1, 1, 1), target_m: (0, 0, 0), follow: \"x\")])" => "1:71" "cameras[0].follow": "no body of the scene";
+        "(expect: [Lean(at_s: 1, near_m: (0, 0), within_m: 1)])" => "1:11" "expect[0]": "no limit", "at_least_deg or at_most_deg";
+        "(expect: [Lean(at_s: 1, near_m: (0, 0), within_m: 1, at_least_deg: 50, at_most_deg: 40)])" => "1:68" "expect[0].at_least_deg": "50", "40";
+        "(expect: [Offset(at_s: 1, near_m: (0, 9), within_m: 1, at_least_m: 0.1)])" => "1:39" "expect[0].near_m[1]": "is 9", "-8 to 8 m";
+        "(expect: [Imprint(body: \"x\", at_s: 1, at_least: 0.5)])" => "1:25" "expect[0].body": "\"x\"";
+        "(expect: [StateHash(is: \"dull\")])" => "1:25" "expect[0].is": "hexadecimal";
+    }
+}
+
+#[test]
+fn counts_over_budget() {
+    check! {
+        "(terrain: (ground: Flat(size_m: (200000, 200000))))" => "1:20" "terrain.ground": "40000400001 height samples", "67108864";
+        "(grass: (density_per_m2: 10000), solver: (tile_m: 32, seeding_cell_m: 8),\n terrain: (ground: Flat(size_m: (64, 64), spacing_m: 8)))" => "1:26" "grass.density_per_m2": "10240000 plants in a tile", "65536";
+        "(solver: (tile_m: 8))" => "1:19" "solver.tile_m": "is 8 m", "0.5 m", "write 2 m";
+        "(terrain: (ground: Flat(size_m: (5000, 5000))))" => "1:20" "terrain.ground": "25000000 tiles", "16777216";
+    }
+    let many = "(shape: Ball(radius_m: 1), name: \"b\"),".repeat(4097);
+    let text = parse_scene("many", &format!("(bodies: [{many}])"), &[]).expect_err("too many");
+    assert!(text.to_string().contains("4097 bodies"), "{text}");
+    let deep = format!("(bodies: {}", "[".repeat(100_000));
+    assert!(parse_scene("deep", &deep, &[]).is_err());
+}
+
+/// A folder of its own that goes when the test ends.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("sward-{name}-{}", std::process::id()));
+        fs::create_dir_all(&path).expect("a temporary folder");
+        Self(path)
+    }
+
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.join(name);
+        fs::create_dir_all(path.parent().expect("inside the folder")).expect("a folder");
+        fs::write(&path, bytes).expect("a temporary file");
+        path
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // A folder that stays behind must not hide why the test failed.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+const TETRAHEDRON: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+#[test]
+fn assets_that_cannot_be_used() {
+    let folder = Folder::new("assets");
+    folder.write("scenes/good.obj", TETRAHEDRON);
+    folder.write("outside.obj", TETRAHEDRON);
+    folder.write("scenes/flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("scenes/line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    folder.write(
+        "scenes/nan.obj",
+        TETRAHEDRON.replace("v 1 0 0", "v nan 0 0"),
+    );
+    folder.write(
+        "scenes/big.obj",
+        TETRAHEDRON.replace("v 1 0 0", "v 1e39 0 0"),
+    );
+    folder.write("scenes/short.glb", b"glTF\x02\0\0\0\xff\xff\xff\xff");
+    folder.write("scenes/picture.png", "no picture");
+    let outside = folder.0.join("outside.obj").display().to_string();
+    let mesh = |file: &str, scale: &str| {
+        format!("(bodies: [\n(name: \"a\", shape: Mesh(file: {file:?}{scale}))])")
+    };
+    let cases = [
+        (
+            mesh("none.obj", ""),
+            "2:31",
+            "file",
+            "in none of the folders looked in",
+        ),
+        (mesh("../outside.obj", ""), "2:31", "file", "stays inside"),
+        (mesh(&outside, ""), "2:31", "file", "stays inside"),
+        (mesh("", ""), "2:31", "file", "`.` file"),
+        (mesh("good.stl", ""), "2:31", "file", ".obj, .gltf or .glb"),
+        (mesh("flat.obj", ""), "2:31", "file", "flat"),
+        (
+            mesh("line.obj", ""),
+            "2:31",
+            "file",
+            "none of its 1 triangles has an area",
+        ),
+        (mesh("nan.obj", ""), "2:31", "file", "vertex"),
+        (mesh("big.obj", ""), "2:31", "file", "vertex"),
+        (mesh("short.glb", ""), "2:31", "file", "4294967295 bytes"),
+        (
+            mesh("good.obj", ", scale: 1000"),
+            "2:50",
+            "scale",
+            "0.001 to 100 m",
+        ),
+    ];
+    for (source, place, field, says) in cases {
+        let path = folder.write("scenes/s.ron", &source);
+        let text = load_scene(&path, &[]).expect_err(&source).to_string();
+        let head = format!("{}:{place}: bodies[0].shape.{field}: ", path.display());
+        assert!(
+            text.starts_with(&head) && text.contains(says),
+            "{source}\n{text}"
+        );
+    }
+    let map = "(terrain: (ground: HeightMap(file: \"picture.png\", spacing_m: 1, height_m: 2)))";
+    let path = folder.write("scenes/s.ron", map);
+    let text = load_scene(&path, &[]).expect_err(map).to_string();
+    assert!(
+        text.contains("s.ron:1:36: terrain.ground.file: `picture.png` is damaged"),
+        "{text}"
+    );
+    let path = folder.write("scenes/s.ron", mesh("outside.obj", ""));
+    assert!(load_scene(&path, &[]).is_err());
+    let found = load_scene(&path, std::slice::from_ref(&folder.0)).expect("found by --assets");
+    assert_eq!(found.assets.meshes["outside.obj"].triangles.len(), 4);
+    let path = folder.write("scenes/latin.ron", b"(\n// gr\xfc\xdf\n)");
+    let text = load_scene(&path, &[]).expect_err("no UTF-8").to_string();
+    assert!(
+        text.contains("latin.ron:2:6: scene: the file is no UTF-8 text"),
+        "{text}"
+    );
+}
+
+/// Bytes like a valid file's: the file with some bytes changed, cut or doubled.
+fn mutated(valid: &'static [u8]) -> impl Strategy<Value = Vec<u8>> {
+    let changes =
+        prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4_u8), 0..12);
+    changes.prop_map(move |changes| {
+        let mut bytes = valid.to_vec();
+        for (place, value, kind) in changes {
+            if bytes.is_empty() {
+                break;
+            }
+            let at = place.index(bytes.len());
+            match kind {
+                0 => bytes[at] = value,
+                1 => bytes.insert(at, value),
+                2 => bytes.truncate(at),
+                _ => bytes.extend_from_within(at..),
+            }
+            // Doubling again and again would only test the budget for bytes.
+            bytes.truncate(1 << 16);
+        }
+        bytes
+    })
+}
+
+const CHAIR: &[u8] = include_bytes!("../scenes/assets/chair.gltf");
+const MEADOW: &[u8] = include_bytes!("../scenes/meadow.ron");
+
+/// A 3 by 2 height map, as a PNG writer makes it.
+fn height_map() -> &'static [u8] {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 3, 2);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    let mut writer = encoder.write_header().expect("a valid header");
+    writer
+        .write_image_data(&[7; 12])
+        .expect("as many bytes as the header says");
+    drop(writer);
+    bytes.leak()
+}
+
+/// A binary glTF file without anything in it.
+const EMPTY_GLB: &[u8] =
+    b"glTF\x02\0\0\0\x30\0\0\0\x1c\0\0\0JSON{\"asset\":{\"version\":\"2.0\"}} ";
+
+fn never_panics(name: &str, bytes: &[u8]) {
+    let files = [(name, bytes)];
+    // Errors are what most of these bytes deserve; reaching the next line is the test.
+    let _ = read_mesh(name, &Embedded(&files));
+    let _ = read_height_map(name, &Embedded(&files));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn any_bytes_as_an_asset(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        for name in ["a.obj", "a.gltf", "a.glb", "a.png"] {
+            never_panics(name, &bytes);
+            let headed = [b"glTF\x02\0\0\0".as_slice(), &bytes].concat();
+            never_panics(name, &headed);
+        }
+    }
+
+    #[test]
+    fn changed_meshes_and_height_maps(
+        obj in mutated(TETRAHEDRON.as_bytes()),
+        gltf in mutated(CHAIR),
+        glb in mutated(EMPTY_GLB),
+        png in mutated(height_map()),
+    ) {
+        never_panics("a.obj", &obj);
+        never_panics("a.gltf", &gltf);
+        never_panics("a.glb", &glb);
+        never_panics("a.png", &png);
+    }
+
+    #[test]
+    fn changed_scenes_are_read_or_explained(bytes in mutated(MEADOW)) {
+        let source = String::from_utf8_lossy(&bytes);
+        let files = [("assets/chair.gltf", CHAIR)];
+        match parse_scene_with("changed", &source, &Embedded(&files)) {
+            Ok(loaded) => {
+                let text = to_ron(&loaded.scene).expect("a scene can be written");
+                let again = parse_scene_with("again", &text, &Embedded(&files));
+                prop_assert_eq!(again.expect("what was valid stays valid").scene, loaded.scene);
+            }
+            Err(error) => {
+                prop_assert!(error.line >= 1 && error.column >= 1 && !error.key.is_empty());
+                let lines = source.lines().count().max(1) as u32 + 1;
+                prop_assert!(error.line <= lines, "{}", error);
+            }
+        }
+    }
+}
