@@ -1,7 +1,8 @@
 //! Colour of the ground: patches of lush and dry grass, and bare soil on slopes.
 //!
 //! A plant takes the colour of the ground under it, so the patches are those of the meadow. They
-//! come from value noise at 8, 3 and 1 m, which no tile or grid spacing shows through.
+//! come from value noise at 8 m and less, at places that noise has wound, so that no tile, grid
+//! spacing or lattice shows through.
 
 use rayon::prelude::*;
 
@@ -67,23 +68,41 @@ impl ColourMap {
 
 /// Colour of the ground at a world place, linear RGB.
 pub fn base_colour(terrain: &Terrain, ground: &HeightGrid, x: f64, z: f64) -> [f32; 3] {
-    let [_, up, _] = ground.normal_in_world(x, z);
-    blend(terrain, x, z, up)
+    blend(terrain, x, z, steepness(ground, x, z))
 }
 
-/// `up` is the vertical part of the ground's unit normal.
-fn blend(terrain: &Terrain, x: f64, z: f64, up: f64) -> [f32; 3] {
-    let noise = |wavelength_m: f64, key| value_noise(x / wavelength_m, z / wavelength_m, key);
-    let fine = noise(0.31, 103);
-    let patches = 0.55 * noise(8.0, 100) + 0.45 * noise(3.1, 101) + 0.2 * noise(1.1, 102);
-    let dry = smooth_step(-0.35, 0.55, patches + 0.1 * fine);
-    // Bare from slopes of about 25° on, fully at 45°, with ragged edges; on level ground only the
-    // rarest spots of the driest patches show soil.
-    let slope = 1.0 - up;
-    let steep = smooth_step(0.09, 0.29, slope + 0.05 * noise(1.3, 104) + 0.02 * fine);
-    let bald = 0.7 * smooth_step(0.55, 0.9, noise(2.3, 105) + 0.25 * noise(0.7, 106)) * dry;
-    let soil = steep.max(bald);
-    let light = 1.0 + 0.1 * fine;
+/// Length of the ground's gradient over two spacings: the triangles' own slopes have edges that
+/// soil would draw in.
+fn steepness(ground: &HeightGrid, x: f64, z: f64) -> f64 {
+    let reach = f64::from(ground.spacing_m);
+    let height = |dx: f64, dz: f64| ground.height_in_world(x + dx, z + dz);
+    let along_x = height(reach, 0.0) - height(-reach, 0.0);
+    let along_z = height(0.0, reach) - height(0.0, -reach);
+    (along_x * along_x + along_z * along_z).sqrt() / (2.0 * reach)
+}
+
+/// `steepness` is the tangent of the ground's slope.
+fn blend(terrain: &Terrain, x: f64, z: f64, steepness: f64) -> [f32; 3] {
+    // Winding the plane before looking up hides the lattice, which runs along the axes.
+    let wind = |key| 1.2 * value_noise(x / 3.7, z / 3.7, key);
+    let (wx, wz) = (x + wind(100), z + wind(101));
+    // A turn by the 3-4-5 triangle's angle, so that no two scales share a direction.
+    let (tx, tz) = (0.8 * wx - 0.6 * wz, 0.6 * wx + 0.8 * wz);
+    let straight = |wavelength_m: f64, key| value_noise(wx / wavelength_m, wz / wavelength_m, key);
+    let turned = |wavelength_m: f64, key| value_noise(tx / wavelength_m, tz / wavelength_m, key);
+
+    // Unwound, or the finest noise is drawn out into streaks.
+    let fine = value_noise(x / 0.23, z / 0.23, 102);
+    let tufts = value_noise((0.8 * x - 0.6 * z) / 0.61, (0.6 * x + 0.8 * z) / 0.61, 103);
+    let patches = 0.5 * turned(8.0, 104) + 0.4 * straight(3.1, 105) + 0.25 * turned(1.3, 106);
+    let dry = smooth_step(-0.5, 0.7, patches + 0.16 * tufts + 0.12 * fine);
+    // Bare from slopes of about 30° on, fully at 50°, with ragged edges; on level ground only the
+    // rarest spots of the driest patches show some soil.
+    let ragged = steepness + 0.12 * straight(1.7, 107) + 0.08 * tufts + 0.05 * fine;
+    let steep = smooth_step(0.55, 1.1, ragged);
+    let bald = smooth_step(0.5, 1.1, turned(2.3, 108) + 0.3 * tufts + 0.2 * fine);
+    let soil = steep.max(0.6 * bald * dry);
+    let light = 1.0 + 0.1 * fine + 0.06 * tufts;
     std::array::from_fn(|c| {
         let lush = f64::from(terrain.lush_rgb[c]);
         let grass = lush + dry * (f64::from(terrain.dry_rgb[c]) - lush);
@@ -128,11 +147,11 @@ mod tests {
     }
 
     /// Shares of dry grass and of soil, read back from pure colours.
-    fn shares(up: f64) -> Vec<[f64; 2]> {
+    fn shares(steepness: f64) -> Vec<[f64; 2]> {
         let mut shares = Vec::new();
         for k in 0..10_000 {
             let (x, z) = (0.37 * f64::from(k % 100), 0.37 * f64::from(k / 100));
-            let [r, g, b] = blend(&terrain(), x, z, up).map(f64::from);
+            let [r, g, b] = blend(&terrain(), x, z, steepness).map(f64::from);
             shares.push([r / (r + g).max(1e-9), b / (b + g).max(1e-9)]);
         }
         shares
@@ -140,7 +159,7 @@ mod tests {
 
     #[test]
     fn level_ground_has_lush_and_dry_patches_and_hardly_any_soil() {
-        let all = shares(1.0);
+        let all = shares(0.0);
         let share = |test: &dyn Fn(&[f64; 2]) -> bool| {
             all.iter().filter(|s| test(s)).count() as f64 / all.len() as f64
         };
@@ -153,9 +172,9 @@ mod tests {
 
     #[test]
     fn steep_ground_is_bare() {
-        // The vertical part of the normal of a slope of 50°.
-        let bare = shares(0.643);
-        assert!(bare.iter().all(|s| s[1] > 0.8));
+        // A slope of 56°.
+        let bare = shares(1.5);
+        assert!(bare.iter().all(|s| s[1] > 0.9));
     }
 
     #[test]
