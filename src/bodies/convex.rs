@@ -41,6 +41,63 @@ impl Hull {
         (hull.planes.len() >= 4 && hull.smallest_width() > 1e-5 * size).then_some(hull)
     }
 
+    /// Diagonal of the bounds.
+    pub fn size(&self) -> f64 {
+        diagonal(&self.vertices)
+    }
+
+    pub fn volume(&self) -> f64 {
+        let corner = |i: u32| Vec3::<f64>::of(self.vertices[i as usize]);
+        let origin = corner(0);
+        self.triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|i| corner(i) - origin);
+                a.dot(b.cross(c)) / 6.0
+            })
+            .sum()
+    }
+
+    /// The vertices as parry takes them; they came from there, so nothing is rounded.
+    pub fn points(&self) -> Vec<Vector> {
+        self.vertices
+            .iter()
+            .map(|v| Vector::from_array(v.map(|c| c as f32)))
+            .collect()
+    }
+
+    /// A hull of fewer of the vertices, inside this one; the others are at most `tolerance_m`
+    /// outside of it. Takes the farthest vertex again and again, from the six extreme ones on.
+    pub fn thinned(&self, tolerance_m: f64) -> Self {
+        let points = self.points();
+        let mut kept: Vec<usize> = Vec::new();
+        for axis in 0..3 {
+            let order =
+                |&a: &usize, &b: &usize| self.vertices[a][axis].total_cmp(&self.vertices[b][axis]);
+            kept.extend((0..points.len()).min_by(order));
+            kept.extend((0..points.len()).max_by(order));
+        }
+        while kept.len() < points.len() {
+            kept.sort_unstable();
+            kept.dedup();
+            let few: Vec<Vector> = kept.iter().map(|&i| points[i]).collect();
+            let Some(hull) = Self::of(&few) else { break };
+            let outside = |i: usize| {
+                let p = Vec3::of(self.vertices[i]);
+                let beyond = |&[x, y, z, d]: &[f64; 4]| Vec3::new(x, y, z).dot(p) - d;
+                hull.planes.iter().map(beyond).fold(0.0, f64::max)
+            };
+            let worst = (0..points.len())
+                .map(|i| (i, outside(i)))
+                .max_by(|a, b| a.1.total_cmp(&b.1));
+            match worst {
+                Some((i, far)) if far > tolerance_m && !kept.contains(&i) => kept.push(i),
+                _ => return hull,
+            }
+        }
+        self.clone()
+    }
+
     /// The smallest distance of two parallel planes that hold the hull, one of them a face.
     pub fn smallest_width(&self) -> f64 {
         self.planes
