@@ -20,6 +20,7 @@ pub mod base;
 pub mod bodies;
 pub mod field;
 pub mod gpu;
+pub mod render;
 pub mod scene;
 pub mod sim;
 pub mod terrain;

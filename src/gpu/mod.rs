@@ -12,6 +12,7 @@ pub mod layout;
 mod timing;
 pub mod wgsl;
 
+pub(crate) use buffer::read_mapped;
 pub use buffer::{Buffer, checked_bytes};
 pub use device::{AdapterReport, Gpu};
 pub use error::GpuError;

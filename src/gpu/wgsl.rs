@@ -114,6 +114,8 @@ pub enum WgslError {
         line: usize,
         import: String,
     },
+    #[error("no embedded shader file is called '{path}'")]
+    UnknownFile { path: String },
     #[error("{file}:{line}: an import reads: #import \"folder/file.wgsl\"")]
     BadImport { file: &'static str, line: usize },
     #[error("constant {name} has the values {first:?} and {second:?}; give one another name")]
@@ -213,6 +215,26 @@ pub fn assemble(file: &WgslFile, libraries: &[&[WgslFile]]) -> Result<Assembled,
     })
 }
 
+/// Puts together the file called `path` in one of the libraries.
+///
+/// # Errors
+/// As for [`assemble`]; `UnknownFile` if there is no such file.
+pub fn assemble_named(path: &str, libraries: &[&[WgslFile]]) -> Result<Assembled, WgslError> {
+    match find(path, libraries) {
+        Some(file) => assemble(file, libraries),
+        None => Err(WgslError::UnknownFile {
+            path: path.to_owned(),
+        }),
+    }
+}
+
+fn find<'a>(path: &str, libraries: &[&'a [WgslFile]]) -> Option<&'a WgslFile> {
+    libraries
+        .iter()
+        .flat_map(|library| library.iter())
+        .find(|file| file.path == path)
+}
+
 /// Appends `file` and, after it, what it imports and `parts` does not hold yet.
 fn gather(
     file: &WgslFile,
@@ -235,15 +257,11 @@ fn gather(
         if parts.iter().any(|part| part.path == name) {
             continue;
         }
-        let found = libraries
-            .iter()
-            .flat_map(|library| library.iter())
-            .find(|candidate| candidate.path == name)
-            .ok_or_else(|| WgslError::UnknownImport {
-                file: file.path,
-                line,
-                import: name.to_owned(),
-            })?;
+        let found = find(name, libraries).ok_or_else(|| WgslError::UnknownImport {
+            file: file.path,
+            line,
+            import: name.to_owned(),
+        })?;
         gather(found, libraries, parts)?;
     }
     Ok(())
