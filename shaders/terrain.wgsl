@@ -17,6 +17,8 @@ struct Ground {
     hill_m: f32, // height of the far land's hills
     soil_rgb: vec3f,
     cover: f32, // share of the ground that plants hide, 0 to 1
+    mean_rgb: vec3f, // of the base colours, for the land far away
+    pad: f32,
 }
 
 struct Chunk {
@@ -39,7 +41,7 @@ struct GroundPoint {
     @location(0) position_from_eye: vec3f,
     @location(1) normal: vec3f,
     @location(2) place_in_field: vec2f,
-    @location(3) beyond: f32, // 0 on the field, 1 in the land around it
+    @location(3) beyond_m: f32, // distance from the field's edge, 0 on the field
 }
 
 fn height_at(column: u32, row: u32) -> f32 {
@@ -93,10 +95,10 @@ fn edge_sample(step: u32) -> vec2u {
 }
 
 fn far_hills(place: vec2f, out_m: f32) -> f32 {
-    let rolling = cloudy_noise(place / 190.0 + 3.0) - 0.45;
-    let ridges = cloudy_noise(place / 900.0 + 11.0) - 0.40;
-    let grows = smoothstep(20.0, 700.0, out_m);
-    return ground.hill_m * (rolling * grows + 5.0 * ridges * smoothstep(150.0, 3000.0, out_m));
+    let rolling = cloudy_noise(place / 170.0 + 3.0) - 0.42;
+    let ridges = cloudy_noise(place / 800.0 + 11.0) - 0.36;
+    let grows = smoothstep(20.0, 500.0, out_m);
+    return ground.hill_m * (rolling * grows + 7.0 * ridges * smoothstep(100.0, 2500.0, out_m));
 }
 
 fn land_height(edge_y: f32, place: vec2f, out_m: f32) -> f32 {
@@ -134,9 +136,8 @@ fn land_vertex(@builtin(vertex_index) vertex: u32) -> GroundPoint {
     // A finger's breadth lower where it slips under the field's edge.
     let sunk = select(0.0, 0.02, out_m <= 0.0);
     let position = ground.corner_from_eye + vec3f(place.x, y - sunk, place.y);
-    let beyond = smoothstep(0.0, 1.5, out_m);
     let clip = frame.clip_from_eye * vec4f(position, 1.0);
-    return GroundPoint(clip, position, normal, place, beyond);
+    return GroundPoint(clip, position, normal, place, max(out_m, 0.0));
 }
 
 struct Surface {
@@ -147,7 +148,7 @@ struct Surface {
 
 // Earth, moss and thatch between the blades, seen from near.
 fn floor_of_grass(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
-    let patches = cloudy_noise(place * 2.3);
+    let patches = cloudy_noise(place * 3.7);
     let lumps = mix(0.5, cloudy_noise(place * 14.0 + 5.0), detail_weight(0.07, pixel_m));
     let grains = mix(0.5, value_noise(place * 130.0), detail_weight(0.008, pixel_m));
     let turn = value_noise(place * 1.7 + 19.0) * 6.0;
@@ -160,9 +161,9 @@ fn floor_of_grass(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
     let thatch = smoothstep(0.28, 0.55, fibres) * detail_weight(0.02, pixel_m);
 
     let earth = ground.soil_rgb * (0.55 + 0.9 * lumps) * (0.75 + 0.5 * grains);
-    let moss = base * (0.45 + 0.7 * lumps) * (0.8 + 0.4 * grains);
+    let moss = mix(base, ground.soil_rgb, 0.3) * (0.4 + 0.7 * lumps) * (0.8 + 0.4 * grains);
     let straw = vec3f(0.30, 0.23, 0.11) * (0.5 + 0.5 * lumps);
-    var albedo = mix(earth, moss, smoothstep(0.36, 0.62, patches + 0.35 * (lumps - 0.5)));
+    var albedo = mix(earth, moss, smoothstep(0.25, 0.75, patches + 0.7 * (lumps - 0.5)));
     albedo = mix(albedo, straw, 0.55 * thatch);
     let relief = 0.012 * lumps + 0.0018 * grains + 0.002 * thatch;
     return Surface(albedo, relief, 1.0 - 0.45 * ground.cover);
@@ -174,7 +175,7 @@ fn top_of_grass(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
     let tufts = mix(0.5, value_noise(place * 13.0), detail_weight(0.08, pixel_m));
     let tips = mix(0.5, value_noise(place * vec2f(90.0, 70.0)), detail_weight(0.012, pixel_m));
     let swathes = cloudy_noise(place * 0.21);
-    let fields = cloudy_noise(place * 0.017 + 8.0);
+    let fields = cloudy_noise(place * 0.009 + 8.0);
     let light = 0.55 + 0.25 * clumps + 0.35 * tufts + 0.3 * tips;
     let dry = vec3f(1.25, 1.05, 0.8);
     let lush = vec3f(0.86, 0.98, 0.95);
@@ -201,13 +202,15 @@ fn ground_fragment(in: GroundPoint) -> @location(0) vec4f {
     // The longer side of a pixel's footprint, tamed at grazing angles.
     let pixel_m = distance * frame.pixel_rad / sqrt(facing_eye);
     let uv = in.place_in_field / ground.size_m;
-    let base = textureSampleLevel(base_colour, base_sampler, uv, 0.0).rgb;
+    let map_rgb = textureSampleLevel(base_colour, base_sampler, uv, 0.0).rgb;
+    // Mirror images of the field would show from a hill: the land turns to its mean colour.
+    let base = mix(map_rgb, ground.mean_rgb, smoothstep(10.0, 90.0, in.beyond_m));
 
     let near = floor_of_grass(in.place_in_field, base, pixel_m);
     let far = top_of_grass(in.place_in_field, base, pixel_m);
     let reach = frame.blade_reach_m;
     var grown = smoothstep(0.6 * reach, 0.95 * reach, distance);
-    grown = max(grown, in.beyond) * select(0.0, 1.0, ground.canopy_m > 0.0);
+    grown = max(grown, smoothstep(0.0, 1.5, in.beyond_m)) * select(0.0, 1.0, ground.canopy_m > 0.0);
     let albedo = mix(near.albedo, far.albedo, grown);
     let open = mix(near.open, far.open, grown);
     let relief = mix(near.relief_m, far.relief_m, grown);

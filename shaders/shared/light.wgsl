@@ -6,7 +6,7 @@
 fn clear_sky(direction: vec3f) -> vec3f {
     let up = max(direction.y, 0.0);
     let towards_sun = dot(direction, frame.sun_direction);
-    let haze = exp(-5.5 * up);
+    let haze = exp(-7.0 * up);
     var sky = mix(frame.zenith_rgb, frame.horizon_rgb, haze);
     // Forward scattering: a broad glow in the haze and a narrow one about the sun.
     let broad = pow(max(0.5 + 0.5 * towards_sun, 0.0), 6.0);
@@ -33,8 +33,8 @@ fn full_sky(direction: vec3f) -> vec3f {
 
 // Light from the whole sky and the ground on a white surface with this normal.
 fn ambient_light(normal: vec3f) -> vec3f {
-    let sky = mix(frame.zenith_rgb, frame.horizon_rgb, 0.35);
-    let side = frame.horizon_rgb * 0.5 + frame.bounce_rgb * 0.5;
+    let sky = mix(frame.zenith_rgb, frame.horizon_rgb, 0.28);
+    let side = frame.horizon_rgb * 0.3 + frame.zenith_rgb * 0.2 + frame.bounce_rgb * 0.5;
     let up = normal.y;
     return select(mix(side, frame.bounce_rgb, -up), mix(side, sky, up), up > 0.0);
 }

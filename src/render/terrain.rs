@@ -52,6 +52,8 @@ gpu_struct! {
         hill_m: f32,
         soil_rgb: [f32; 3],
         cover: f32,
+        mean_rgb: [f32; 3],
+        pad: f32,
     }
 }
 
@@ -298,10 +300,29 @@ fn ground_uniform(heights: &HeightGrid, look: &GroundLook<'_>) -> Ground {
         edge_steps: 2 * (east + south),
         corner_from_eye: [0.0; 3],
         // Even around a flat field the far land rolls a little.
-        hill_m: (0.5 * (high - low)).clamp(6.0, 40.0),
+        hill_m: (0.5 * (high - low)).clamp(9.0, 40.0),
         soil_rgb: look.soil_rgb,
         cover: look.cover.clamp(0.0, 1.0),
+        mean_rgb: mean_rgb(look.rgba8),
+        pad: 0.0,
     }
+}
+
+/// Mean of sRGB-encoded texels, as linear light.
+fn mean_rgb(rgba8: &[u8]) -> [f32; 3] {
+    let mut sum = [0.0_f64; 3];
+    for texel in rgba8.chunks_exact(4) {
+        for (total, &byte) in sum.iter_mut().zip(texel) {
+            let encoded = f64::from(byte) / 255.0;
+            *total += if encoded <= 0.04045 {
+                encoded / 12.92
+            } else {
+                ((encoded + 0.055) / 1.055).powf(2.4)
+            };
+        }
+    }
+    let texels = (rgba8.len() / 4).max(1) as f64;
+    sum.map(|total| (total / texels) as f32)
 }
 
 /// Uploads the base-colour map.

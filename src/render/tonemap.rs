@@ -22,9 +22,9 @@ pub struct Exposure {
 impl Default for Exposure {
     fn default() -> Self {
         Self {
-            exposure: 0.62,
-            contrast: 1.12,
-            saturation: 1.18,
+            exposure: 0.66,
+            contrast: 1.10,
+            saturation: 1.10,
         }
     }
 }

@@ -31,8 +31,8 @@ gpu_struct! {
     }
 }
 
-/// Light lost to the air, per metre: a view of about 12 km on a clear day.
-const AIR_PER_M: f32 = 1.0 / 3000.0;
+/// Light lost to the air, per metre: two thirds are lost after 1.6 km, as on a hazy summer day.
+const AIR_PER_M: f32 = 1.0 / 1600.0;
 /// Drift of the high clouds, in their pattern's units per second.
 const CLOUDS_PER_S: f64 = 0.0015;
 
