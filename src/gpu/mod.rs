@@ -8,6 +8,7 @@
 mod buffer;
 mod device;
 mod error;
+pub mod field_data;
 pub mod layout;
 mod timing;
 pub mod wgsl;
@@ -16,5 +17,6 @@ pub(crate) use buffer::read_mapped;
 pub use buffer::{Buffer, checked_bytes};
 pub use device::{AdapterReport, Gpu};
 pub use error::GpuError;
+pub use field_data::FieldBuffers;
 pub use layout::GpuStruct;
 pub use timing::PassTimer;

@@ -7,7 +7,12 @@
 
 use std::fmt::Write;
 
+use super::field_data::{NO_SLAB, TILE_COLLIDING, TILE_RECOVERING, TILE_RESTING};
 use crate::base::trig::SINE_QUARTER;
+use crate::field::grid::ANCHOR_CELLS;
+use crate::field::plant::MAX_SPECIES;
+use crate::field::pose::MAX_NODES;
+use crate::field::wind::WAVES;
 
 /// A WGSL file, embedded, with the Rust constants it uses.
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +53,7 @@ macro_rules! value_from {
 
 value_from! {
     u32 => |v| Value::U32(v),
+    usize => |v| Value::U32(v as u32),
     i32 => |v| Value::I32(v),
     f32 => |v| Value::F32(v),
 }
@@ -98,8 +104,20 @@ macro_rules! wgsl_file {
 
 /// Files that any layer's shaders may import.
 pub const SHARED: &[WgslFile] = &[
+    wgsl_file!("shared/field.wgsl", MAX_SPECIES),
+    wgsl_file!("shared/ground.wgsl"),
     wgsl_file!("shared/philox.wgsl"),
+    wgsl_file!("shared/plant.wgsl", ANCHOR_CELLS),
+    wgsl_file!("shared/pose.wgsl", MAX_NODES),
+    wgsl_file!(
+        "shared/tile.wgsl",
+        NO_SLAB,
+        TILE_COLLIDING,
+        TILE_RECOVERING,
+        TILE_RESTING
+    ),
     wgsl_file!("shared/trig.wgsl", SINE_QUARTER),
+    wgsl_file!("shared/wind.wgsl", WAVES),
 ];
 
 /// One file per compute pass.
