@@ -11,7 +11,7 @@ struct BodyRecord {
     radius_m: f32,
 }
 
-@group(1) @binding(0) var<storage, read> body_records: array<BodyRecord>;
+@group(3) @binding(0) var<storage, read> body_records: array<BodyRecord>;
 
 struct BodyVertex {
     @location(0) position_in_body: vec3f,

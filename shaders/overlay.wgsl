@@ -10,7 +10,7 @@ struct OverlayBox {
     pad: f32,
 }
 
-@group(1) @binding(0) var<storage, read> boxes: array<OverlayBox>;
+@group(3) @binding(0) var<storage, read> boxes: array<OverlayBox>;
 
 struct OverlayPoint {
     @builtin(position) clip: vec4f,

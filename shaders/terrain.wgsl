@@ -30,11 +30,11 @@ struct Chunk {
     pad_c: u32,
 }
 
-@group(1) @binding(0) var<uniform> ground: Ground;
-@group(1) @binding(1) var<storage, read> heights_m: array<f32>;
-@group(1) @binding(2) var<storage, read> chunks: array<Chunk>;
-@group(1) @binding(3) var base_colour: texture_2d<f32>;
-@group(1) @binding(4) var base_sampler: sampler;
+@group(3) @binding(0) var<uniform> ground: Ground;
+@group(3) @binding(1) var<storage, read> heights_m: array<f32>;
+@group(3) @binding(2) var<storage, read> chunks: array<Chunk>;
+@group(3) @binding(3) var base_colour: texture_2d<f32>;
+@group(3) @binding(4) var base_sampler: sampler;
 
 struct GroundPoint {
     @builtin(position) clip: vec4f,

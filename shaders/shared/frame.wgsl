@@ -19,4 +19,4 @@ struct Frame {
     viewport_px: vec2f,
 }
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+@group(1) @binding(0) var<uniform> frame: Frame;

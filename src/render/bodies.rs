@@ -80,14 +80,14 @@ impl BodiesLayer {
             shader: "bodies.wgsl",
             vertex: "body_vertex",
             fragment: "body_fragment",
-            groups: &[&groups.frame_layout, &layout, &groups.shadow_layout],
+            groups: groups.lit(&layout),
             buffers: &buffers,
             samples,
             ..Drawing::default()
         };
         let shadow = Drawing {
             vertex: "shadow_vertex",
-            groups: &[&groups.frame_layout, &layout],
+            groups: groups.unlit(&layout),
             depth: DepthUse::Shadow,
             samples: 1,
             ..drawing
@@ -202,7 +202,7 @@ impl BodiesLayer {
     }
 
     fn draw_all(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_bind_group(1, &self.group, &[]);
+        pass.set_bind_group(3, &self.group, &[]);
         pass.set_vertex_buffer(0, self.vertices.raw.slice(..));
         pass.set_index_buffer(self.indices.raw.slice(..), wgpu::IndexFormat::Uint32);
         for (shape, records) in &self.draws {

@@ -129,12 +129,12 @@ impl Renderer {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
 
         let mut pass = self.shadow.begin(&mut encoder, timer.render("shadow"));
-        pass.set_bind_group(0, &self.groups.frame_group, &[]);
+        pass.set_bind_group(1, &self.groups.frame_group, &[]);
         self.bodies.draw_shadow(&mut pass);
         drop(pass);
 
         let mut pass = self.targets.begin(&mut encoder, timer.render("scene"));
-        pass.set_bind_group(0, &self.groups.frame_group, &[]);
+        pass.set_bind_group(1, &self.groups.frame_group, &[]);
         pass.set_bind_group(2, &self.groups.shadow_group, &[]);
         self.bodies.draw(&mut pass);
         self.terrain.draw(&mut pass);

@@ -76,12 +76,11 @@ pub(super) struct OverlayLayer {
 impl OverlayLayer {
     pub(super) fn new(gpu: &Gpu, groups: &ViewGroups, samples: u32) -> Result<Self, GpuError> {
         let layout = group_layout(gpu, "overlay", &[(ShaderStages::VERTEX, READ_STORAGE)]);
-        let layouts = [&groups.frame_layout, &layout];
         let edges = Drawing {
             shader: "overlay.wgsl",
             vertex: "edge_vertex",
             fragment: "overlay_fragment",
-            groups: &layouts,
+            groups: groups.unlit(&layout),
             depth: DepthUse::TestOnly,
             samples,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
@@ -132,7 +131,7 @@ impl OverlayLayer {
         if self.count == 0 {
             return;
         }
-        pass.set_bind_group(1, &self.group, &[]);
+        pass.set_bind_group(3, &self.group, &[]);
         pass.set_pipeline(&self.sides);
         pass.draw(0..5 * 6, 0..self.count);
         pass.set_pipeline(&self.edges);

@@ -26,7 +26,8 @@ pub(super) struct Drawing<'a> {
     pub shader: &'a str,
     pub vertex: &'a str,
     pub fragment: &'a str,
-    pub groups: &'a [&'a wgpu::BindGroupLayout],
+    /// Bind groups: 0 the field, 1 the view, 2 the shadow map, 3 the layer's own.
+    pub groups: [Option<&'a wgpu::BindGroupLayout>; 4],
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub format: wgpu::TextureFormat,
     pub samples: u32,
@@ -44,7 +45,7 @@ impl Default for Drawing<'_> {
             shader: "",
             vertex: "",
             fragment: "",
-            groups: &[],
+            groups: [None; 4],
             buffers: &[],
             format: LIGHT_FORMAT,
             samples: 1,
@@ -73,7 +74,14 @@ impl Drawing<'_> {
         let is_shadow = self.depth == DepthUse::Shadow;
         let what = format!("pipeline {} of {}", self.vertex, self.shader);
         gpu.guarded(&what, || {
-            let layout = gpu.pipeline_layout(self.shader, self.groups);
+            let used = self.groups.iter().rposition(Option::is_some);
+            let layout = gpu
+                .device
+                .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: Some(self.shader),
+                    bind_group_layouts: &self.groups[..used.map_or(0, |last| last + 1)],
+                    immediate_size: 0,
+                });
             gpu.device
                 .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                     label: Some(self.vertex),

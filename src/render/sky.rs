@@ -101,7 +101,7 @@ impl SkyLayer {
             shader: "sky.wgsl",
             vertex: "sky_vertex",
             fragment: "sky_fragment",
-            groups: &[&groups.frame_layout],
+            groups: groups.view_only(),
             depth: DepthUse::TestOnly,
             samples,
             ..Drawing::default()

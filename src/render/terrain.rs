@@ -124,7 +124,7 @@ impl TerrainLayer {
             shader: "terrain.wgsl",
             vertex: "field_vertex",
             fragment: "ground_fragment",
-            groups: &[&groups.frame_layout, &layout, &groups.shadow_layout],
+            groups: groups.lit(&layout),
             depth: DepthUse::Write,
             samples,
             ..Drawing::default()
@@ -227,7 +227,7 @@ impl TerrainLayer {
         let Some(scene) = &self.scene else {
             return;
         };
-        pass.set_bind_group(1, &scene.group, &[]);
+        pass.set_bind_group(3, &scene.group, &[]);
         pass.set_pipeline(&self.field);
         pass.set_index_buffer(self.indices.raw.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..self.indices.len() as u32, 0, 0..scene.visible);

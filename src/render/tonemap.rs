@@ -69,7 +69,7 @@ impl TonemapLayer {
             shader: "tonemap.wgsl",
             vertex: "tonemap_vertex",
             fragment: "tonemap_fragment",
-            groups: &[&layout],
+            groups: [Some(&layout), None, None, None],
             format,
             depth: DepthUse::None,
             ..Drawing::default()

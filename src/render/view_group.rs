@@ -1,4 +1,5 @@
-//! Bind groups that every layer shares: group 0, the view and the light; group 2, the shadow map.
+//! Bind groups that layers share: 1, the view and the light; 2, the shadow map. Group 0 is the
+//! field's, for layers that draw plants; group 3 is a layer's own.
 
 use wgpu::{BindGroup, BindGroupLayout, BindingType, BufferUsages, ShaderStages};
 
@@ -123,6 +124,28 @@ impl ViewGroups {
             shadow_group,
             frame,
         })
+    }
+
+    /// Groups of a layer without data of its own.
+    pub(super) fn view_only(&self) -> [Option<&BindGroupLayout>; 4] {
+        [None, Some(&self.frame_layout), None, None]
+    }
+
+    /// Groups of a layer on which no shadow falls.
+    pub(super) fn unlit<'a>(
+        &'a self,
+        layer: &'a BindGroupLayout,
+    ) -> [Option<&'a BindGroupLayout>; 4] {
+        [None, Some(&self.frame_layout), None, Some(layer)]
+    }
+
+    /// Groups of a layer that receives shadows.
+    pub(super) fn lit<'a>(
+        &'a self,
+        layer: &'a BindGroupLayout,
+    ) -> [Option<&'a BindGroupLayout>; 4] {
+        let [_, view, _, layer] = self.unlit(layer);
+        [None, view, Some(&self.shadow_layout), layer]
     }
 
     pub(super) fn write(&self, gpu: &Gpu, frame: Frame) -> Result<(), GpuError> {
