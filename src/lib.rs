@@ -21,6 +21,7 @@ pub mod bodies;
 pub mod field;
 pub mod gpu;
 pub mod run;
+pub mod render;
 pub mod scene;
 pub mod sim;
 pub mod terrain;

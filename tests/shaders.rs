@@ -8,13 +8,16 @@ use std::path::Path;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use sward::gpu::layout::{self, StructLayout};
 use sward::gpu::wgsl::{self, Assembled, WgslFile};
+use sward::render;
 
 fn libraries() -> Vec<&'static [WgslFile]> {
-    vec![wgsl::SHARED, wgsl::PASSES]
+    vec![wgsl::SHARED, wgsl::PASSES, render::SHADERS]
 }
 
 fn layouts() -> Vec<StructLayout> {
-    layout::layouts()
+    let mut all = layout::layouts();
+    all.extend(render::layouts());
+    all
 }
 
 /// Parses and validates under WebGPU's base features: no capability beyond them is allowed.

@@ -27,7 +27,13 @@ pub trait GpuStruct: Pod {
 
 /// Layouts of the structs that the shaders of this layer read.
 pub fn layouts() -> Vec<StructLayout> {
-    Vec::new()
+    use super::field_data::{FieldUniform, SpeciesUniform, WaveUniform, WindUniform};
+    vec![
+        FieldUniform::layout(),
+        SpeciesUniform::layout(),
+        WaveUniform::layout(),
+        WindUniform::layout(),
+    ]
 }
 
 /// Defines a plain struct for a shader and registers the layout of every field.

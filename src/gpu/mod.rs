@@ -8,12 +8,15 @@
 mod buffer;
 mod device;
 mod error;
+pub mod field_data;
 pub mod layout;
 mod timing;
 pub mod wgsl;
 
+pub(crate) use buffer::read_mapped;
 pub use buffer::{Buffer, checked_bytes};
 pub use device::{AdapterReport, Gpu};
 pub use error::GpuError;
+pub use field_data::FieldBuffers;
 pub use layout::GpuStruct;
 pub use timing::PassTimer;

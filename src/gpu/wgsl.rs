@@ -7,7 +7,12 @@
 
 use std::fmt::Write;
 
+use super::field_data::{NO_SLAB, TILE_COLLIDING, TILE_RECOVERING, TILE_RESTING};
 use crate::base::trig::SINE_QUARTER;
+use crate::field::grid::ANCHOR_CELLS;
+use crate::field::plant::MAX_SPECIES;
+use crate::field::pose::MAX_NODES;
+use crate::field::wind::WAVES;
 
 /// A WGSL file, embedded, with the Rust constants it uses.
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +53,7 @@ macro_rules! value_from {
 
 value_from! {
     u32 => |v| Value::U32(v),
+    usize => |v| Value::U32(v as u32),
     i32 => |v| Value::I32(v),
     f32 => |v| Value::F32(v),
 }
@@ -98,8 +104,20 @@ macro_rules! wgsl_file {
 
 /// Files that any layer's shaders may import.
 pub const SHARED: &[WgslFile] = &[
+    wgsl_file!("shared/field.wgsl", MAX_SPECIES),
+    wgsl_file!("shared/ground.wgsl"),
     wgsl_file!("shared/philox.wgsl"),
+    wgsl_file!("shared/plant.wgsl", ANCHOR_CELLS),
+    wgsl_file!("shared/pose.wgsl", MAX_NODES),
+    wgsl_file!(
+        "shared/tile.wgsl",
+        NO_SLAB,
+        TILE_COLLIDING,
+        TILE_RECOVERING,
+        TILE_RESTING
+    ),
     wgsl_file!("shared/trig.wgsl", SINE_QUARTER),
+    wgsl_file!("shared/wind.wgsl", WAVES),
 ];
 
 /// One file per compute pass.
@@ -114,6 +132,8 @@ pub enum WgslError {
         line: usize,
         import: String,
     },
+    #[error("no embedded shader file is called '{path}'")]
+    UnknownFile { path: String },
     #[error("{file}:{line}: an import reads: #import \"folder/file.wgsl\"")]
     BadImport { file: &'static str, line: usize },
     #[error("constant {name} has the values {first:?} and {second:?}; give one another name")]
@@ -213,6 +233,26 @@ pub fn assemble(file: &WgslFile, libraries: &[&[WgslFile]]) -> Result<Assembled,
     })
 }
 
+/// Puts together the file called `path` in one of the libraries.
+///
+/// # Errors
+/// As for [`assemble`]; `UnknownFile` if there is no such file.
+pub fn assemble_named(path: &str, libraries: &[&[WgslFile]]) -> Result<Assembled, WgslError> {
+    match find(path, libraries) {
+        Some(file) => assemble(file, libraries),
+        None => Err(WgslError::UnknownFile {
+            path: path.to_owned(),
+        }),
+    }
+}
+
+fn find<'a>(path: &str, libraries: &[&'a [WgslFile]]) -> Option<&'a WgslFile> {
+    libraries
+        .iter()
+        .flat_map(|library| library.iter())
+        .find(|file| file.path == path)
+}
+
 /// Appends `file` and, after it, what it imports and `parts` does not hold yet.
 fn gather(
     file: &WgslFile,
@@ -235,15 +275,11 @@ fn gather(
         if parts.iter().any(|part| part.path == name) {
             continue;
         }
-        let found = libraries
-            .iter()
-            .flat_map(|library| library.iter())
-            .find(|candidate| candidate.path == name)
-            .ok_or_else(|| WgslError::UnknownImport {
-                file: file.path,
-                line,
-                import: name.to_owned(),
-            })?;
+        let found = find(name, libraries).ok_or_else(|| WgslError::UnknownImport {
+            file: file.path,
+            line,
+            import: name.to_owned(),
+        })?;
         gather(found, libraries, parts)?;
     }
     Ok(())

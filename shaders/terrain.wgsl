@@ -1,0 +1,229 @@
+// The ground: the exact triangles of the height samples, and a land around them that runs to
+// the horizon. Host: src/render/terrain.rs.
+#import "shared/frame.wgsl"
+#import "shared/light.wgsl"
+#import "shared/noise.wgsl"
+#import "shared/shadow.wgsl"
+
+struct Ground {
+    columns: u32,
+    rows: u32,
+    spacing_m: f32,
+    canopy_m: f32, // height of the grass; 0 where none grows
+    size_m: vec2f,
+    edge_y_m: f32, // mean height of the field's edge
+    edge_steps: u32, // samples around the edge
+    corner_from_eye: vec3f, // the field's corner, at height 0
+    hill_m: f32, // height of the far land's hills
+    soil_rgb: vec3f,
+    cover: f32, // share of the ground that plants hide, 0 to 1
+    mean_rgb: vec3f, // of the base colours, for the land far away
+    pad: f32,
+}
+
+struct Chunk {
+    first_from_eye: vec3f, // place of the chunk's first sample, at height 0
+    first_column: u32,
+    first_row: u32,
+    pad_a: u32,
+    pad_b: u32,
+    pad_c: u32,
+}
+
+@group(3) @binding(0) var<uniform> ground: Ground;
+@group(3) @binding(1) var<storage, read> heights_m: array<f32>;
+@group(3) @binding(2) var<storage, read> chunks: array<Chunk>;
+@group(3) @binding(3) var base_colour: texture_2d<f32>;
+@group(3) @binding(4) var base_sampler: sampler;
+
+struct GroundPoint {
+    @builtin(position) clip: vec4f,
+    @location(0) position_from_eye: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) place_in_field: vec2f,
+    @location(3) beyond_m: f32, // distance from the field's edge, 0 on the field
+}
+
+fn height_at(column: u32, row: u32) -> f32 {
+    let i = min(column, ground.columns - 1u);
+    let j = min(row, ground.rows - 1u);
+    return heights_m[j * ground.columns + i];
+}
+
+// Smooth normal at a sample, from its neighbours.
+fn normal_at(column: u32, row: u32) -> vec3f {
+    let west = select(column - 1u, 0u, column == 0u);
+    let north = select(row - 1u, 0u, row == 0u);
+    let east = min(column + 1u, ground.columns - 1u);
+    let south = min(row + 1u, ground.rows - 1u);
+    let rise_x = (height_at(east, row) - height_at(west, row)) / f32(east - west);
+    let rise_z = (height_at(column, south) - height_at(column, north)) / f32(south - north);
+    return normalize(vec3f(-rise_x, ground.spacing_m, -rise_z));
+}
+
+// `vertex` counts the samples of a chunk, row by row; the index list cuts its squares by parity.
+@vertex
+fn field_vertex(
+    @builtin(vertex_index) vertex: u32,
+    @builtin(instance_index) instance: u32,
+) -> GroundPoint {
+    let chunk = chunks[instance];
+    // Squares beyond the field's edge shrink to nothing.
+    let column = min(chunk.first_column + vertex % CHUNK_SAMPLES, ground.columns - 1u);
+    let row = min(chunk.first_row + vertex / CHUNK_SAMPLES, ground.rows - 1u);
+    let local = vec2f(f32(column - chunk.first_column), f32(row - chunk.first_row));
+    let across = local * ground.spacing_m;
+    let position = chunk.first_from_eye + vec3f(across.x, height_at(column, row), across.y);
+    let place = vec2f(f32(column), f32(row)) * ground.spacing_m;
+    let clip = frame.clip_from_eye * vec4f(position, 1.0);
+    return GroundPoint(clip, position, normal_at(column, row), place, 0.0);
+}
+
+// Sample `step` of the walk around the field's edge, from its corner along x first.
+fn edge_sample(step: u32) -> vec2u {
+    let east = ground.columns - 1u;
+    let south = ground.rows - 1u;
+    let s = step % ground.edge_steps;
+    if s < east {
+        return vec2u(s, 0u);
+    } else if s < east + south {
+        return vec2u(east, s - east);
+    } else if s < 2u * east + south {
+        return vec2u(2u * east + south - s, south);
+    }
+    return vec2u(0u, 2u * (east + south) - s);
+}
+
+fn far_hills(place: vec2f, out_m: f32) -> f32 {
+    let rolling = cloudy_noise(place / 170.0 + 3.0) - 0.42;
+    let ridges = cloudy_noise(place / 800.0 + 11.0) - 0.36;
+    let grows = smoothstep(20.0, 500.0, out_m);
+    return ground.hill_m * (rolling * grows + 7.0 * ridges * smoothstep(100.0, 2500.0, out_m));
+}
+
+fn land_height(edge_y: f32, place: vec2f, out_m: f32) -> f32 {
+    // The land starts at the edge's own height and is lifted to the top of the grass, so that the
+    // end of the field shows no step.
+    let settled = mix(edge_y, ground.edge_y_m, smoothstep(0.0, 60.0, out_m));
+    let canopy = 0.55 * ground.canopy_m * smoothstep(0.0, 2.0, out_m);
+    return settled + canopy + far_hills(place, out_m);
+}
+
+@vertex
+fn land_vertex(@builtin(vertex_index) vertex: u32) -> GroundPoint {
+    let cell = vertex / 6u;
+    let corner = vertex % 6u;
+    // Two triangles of a cell, counter-clockwise from above.
+    let along = select(0u, 1u, corner == 2u || corner == 3u || corner == 5u);
+    let outward = select(0u, 1u, corner == 1u || corner == 4u || corner == 5u);
+    let step = cell % ground.edge_steps + along;
+    let ring = cell / ground.edge_steps + outward;
+    let sample = edge_sample(step);
+    let edge = vec2f(sample) * ground.spacing_m;
+    let middle = 0.5 * ground.size_m;
+    let direction = (edge - middle) / min(middle.x, middle.y);
+    let out_m = LAND_RINGS_M[ring];
+    let shift = direction * out_m;
+    let place = edge + shift;
+    let edge_y = height_at(sample.x, sample.y);
+    let y = land_height(edge_y, place, max(out_m, 0.0));
+    let step_m = 2.0 + 0.1 * max(out_m, 0.0);
+    let rise_x = far_hills(place + vec2f(step_m, 0.0), out_m) - far_hills(place, out_m);
+    let rise_z = far_hills(place + vec2f(0.0, step_m), out_m) - far_hills(place, out_m);
+    let hills = normalize(vec3f(-rise_x, step_m, -rise_z));
+    let here = normal_at(sample.x, sample.y);
+    let normal = normalize(mix(here, hills, smoothstep(0.0, 60.0, out_m)));
+    // A finger's breadth lower where it slips under the field's edge.
+    let sunk = select(0.0, 0.02, out_m <= 0.0);
+    let position = ground.corner_from_eye + vec3f(place.x, y - sunk, place.y);
+    let clip = frame.clip_from_eye * vec4f(position, 1.0);
+    return GroundPoint(clip, position, normal, place, max(out_m, 0.0));
+}
+
+struct Surface {
+    albedo: vec3f,
+    relief_m: f32, // small height for bumps
+    open: f32, // share of the light that comes past the plants
+}
+
+// Earth, moss and thatch between the blades, seen from near.
+fn floor_of_grass(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
+    let patches = cloudy_noise(place * 3.7);
+    let lumps = mix(0.5, cloudy_noise(place * 14.0 + 5.0), detail_weight(0.07, pixel_m));
+    let grains = mix(0.5, value_noise(place * 130.0), detail_weight(0.008, pixel_m));
+    let turn = value_noise(place * 1.7 + 19.0) * 6.0;
+    let fibre_place = vec2f(
+        cos(turn) * place.x + sin(turn) * place.y,
+        cos(turn) * place.y - sin(turn) * place.x,
+    );
+    let fibres = value_noise(fibre_place * vec2f(14.0, 190.0))
+        * value_noise(fibre_place.yx * vec2f(17.0, 150.0) + 40.0);
+    let thatch = smoothstep(0.28, 0.55, fibres) * detail_weight(0.02, pixel_m);
+
+    let earth = ground.soil_rgb * (0.55 + 0.9 * lumps) * (0.75 + 0.5 * grains);
+    let moss = mix(base, ground.soil_rgb, 0.3) * (0.4 + 0.7 * lumps) * (0.8 + 0.4 * grains);
+    let straw = vec3f(0.30, 0.23, 0.11) * (0.5 + 0.5 * lumps);
+    var albedo = mix(earth, moss, smoothstep(0.25, 0.75, patches + 0.7 * (lumps - 0.5)));
+    albedo = mix(albedo, straw, 0.55 * thatch);
+    let relief = 0.012 * lumps + 0.0018 * grains + 0.002 * thatch;
+    return Surface(albedo, relief, 1.0 - 0.45 * ground.cover);
+}
+
+// The field where single blades are too small to draw: tops of clumps, with dark between them.
+fn top_of_grass(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
+    let clumps = mix(0.5, value_noise(place * 3.1), detail_weight(0.3, pixel_m));
+    let tufts = mix(0.5, value_noise(place * 13.0), detail_weight(0.08, pixel_m));
+    let tips = mix(0.5, value_noise(place * vec2f(90.0, 70.0)), detail_weight(0.012, pixel_m));
+    let swathes = cloudy_noise(place * 0.21);
+    let fields = cloudy_noise(place * 0.009 + 8.0);
+    let light = 0.55 + 0.25 * clumps + 0.35 * tufts + 0.3 * tips;
+    let dry = vec3f(1.25, 1.05, 0.8);
+    let lush = vec3f(0.86, 0.98, 0.95);
+    let tint = mix(lush, dry, saturate(0.55 * swathes + 0.45 * fields));
+    return Surface(base * tint * light * 0.82, 0.05 * clumps + 0.02 * tufts, 0.85);
+}
+
+// Bends a normal by a small height that varies over the screen (Mikkelsen 2010).
+fn bumped(normal: vec3f, position: vec3f, relief_m: f32) -> vec3f {
+    let right = dpdx(position);
+    let down = dpdy(position);
+    let across = cross(down, normal);
+    let along = cross(normal, right);
+    let area = dot(right, across);
+    let slope = sign(area) * (dpdx(relief_m) * across + dpdy(relief_m) * along);
+    return normalize(abs(area) * normal - slope + normal * 1e-12);
+}
+
+@fragment
+fn ground_fragment(in: GroundPoint) -> @location(0) vec4f {
+    let distance = length(in.position_from_eye);
+    let to_eye = -in.position_from_eye / max(distance, 1e-6);
+    let facing_eye = max(dot(to_eye, normalize(in.normal)), 0.08);
+    // The longer side of a pixel's footprint, tamed at grazing angles.
+    let pixel_m = distance * frame.pixel_rad / sqrt(facing_eye);
+    let uv = in.place_in_field / ground.size_m;
+    let map_rgb = textureSampleLevel(base_colour, base_sampler, uv, 0.0).rgb;
+    // Mirror images of the field would show from a hill: the land turns to its mean colour.
+    let base = mix(map_rgb, ground.mean_rgb, smoothstep(10.0, 90.0, in.beyond_m));
+
+    let near = floor_of_grass(in.place_in_field, base, pixel_m);
+    let far = top_of_grass(in.place_in_field, base, pixel_m);
+    let reach = frame.blade_reach_m;
+    var grown = smoothstep(0.6 * reach, 0.95 * reach, distance);
+    grown = max(grown, smoothstep(0.0, 1.5, in.beyond_m)) * select(0.0, 1.0, ground.canopy_m > 0.0);
+    let albedo = mix(near.albedo, far.albedo, grown);
+    let open = mix(near.open, far.open, grown);
+    let relief = mix(near.relief_m, far.relief_m, grown);
+
+    let flat_normal = normalize(in.normal);
+    let bumpy = bumped(flat_normal, in.position_from_eye, relief);
+    let normal = normalize(mix(flat_normal, bumpy, detail_weight(0.06, pixel_m)));
+    let facing = max(dot(normal, frame.sun_direction), 0.0);
+    let reaches = sun_reaches(in.position_from_eye, flat_normal);
+    // Light that grass lets through towards the eye when the sun stands behind it.
+    let against = pow(max(-dot(to_eye, frame.sun_direction), 0.0), 3.0);
+    let through = vec3f(0.9, 1.0, 0.3) * (0.5 * grown * against);
+    let sun = frame.sun_rgb * reaches * (vec3f(facing) + through);
+    let light = albedo * open * (sun + ambient_light(normal));
+    return vec4f(through_air(light, in.position_from_eye), 1.0);
+}

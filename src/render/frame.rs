@@ -1,0 +1,170 @@
+//! One frame as a list.
+
+use crate::bodies::RigidShape;
+use crate::gpu::{Gpu, PassTimer};
+use crate::terrain::HeightGrid;
+
+use super::bodies::{BodiesLayer, BodyInstance};
+use super::camera::View;
+use super::error::RenderError;
+use super::overlay::{OverlayLayer, TileMark};
+use super::shadow::{ShadowFit, ShadowMap};
+use super::sky::{SkyLayer, Sun};
+use super::targets::{Targets, most_samples};
+use super::terrain::{GroundLook, TerrainLayer};
+use super::tonemap::{Exposure, TonemapLayer};
+use super::view_group::{Frame, ViewGroups};
+
+/// Draws pictures of a meadow, in one size at a time.
+#[derive(Debug)]
+pub struct Renderer {
+    groups: ViewGroups,
+    shadow: ShadowMap,
+    bodies: BodiesLayer,
+    terrain: TerrainLayer,
+    sky: SkyLayer,
+    overlay: OverlayLayer,
+    tonemap: TonemapLayer,
+    targets: Targets,
+    resolved_light: wgpu::BindGroup,
+    samples: u32,
+}
+
+/// Everything that may change from one frame to the next.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameInput<'a> {
+    pub view: &'a View,
+    pub sun: Sun,
+    pub exposure: Exposure,
+    pub bodies: &'a [BodyInstance],
+    /// Boxes of the tile-state overlay; empty to leave it out.
+    pub marks: &'a [TileMark],
+    /// Seconds since the start, for drifting clouds.
+    pub time_s: f64,
+}
+
+impl Renderer {
+    /// A renderer for targets of a format and size, with 4 samples per pixel where the device
+    /// has them.
+    ///
+    /// # Errors
+    /// A size the device cannot hold; the device's own errors.
+    pub fn new(
+        gpu: &Gpu,
+        format: wgpu::TextureFormat,
+        size: [u32; 2],
+    ) -> Result<Self, RenderError> {
+        let samples = most_samples(gpu);
+        let shadow = ShadowMap::new(gpu)?;
+        let groups = ViewGroups::new(gpu, &shadow.view)?;
+        let targets = Targets::new(gpu, size, samples)?;
+        let tonemap = TonemapLayer::new(gpu, format)?;
+        Ok(Self {
+            bodies: BodiesLayer::new(gpu, &groups, samples)?,
+            terrain: TerrainLayer::new(gpu, &groups, samples)?,
+            sky: SkyLayer::new(gpu, &groups, samples)?,
+            overlay: OverlayLayer::new(gpu, &groups, samples)?,
+            resolved_light: tonemap.bind(gpu, &targets),
+            tonemap,
+            targets,
+            groups,
+            shadow,
+            samples,
+        })
+    }
+
+    /// Takes a scene's ground and body shapes in place of the old ones.
+    ///
+    /// # Errors
+    /// Bad colour maps, data larger than the device can bind.
+    pub fn set_scene(
+        &mut self,
+        gpu: &Gpu,
+        ground: &HeightGrid,
+        look: &GroundLook<'_>,
+        shapes: &[RigidShape],
+    ) -> Result<(), RenderError> {
+        self.terrain.set_ground(gpu, ground, look)?;
+        self.set_shapes(gpu, shapes)
+    }
+
+    /// Takes new body shapes alone, for a body that is added while the scene runs.
+    ///
+    /// # Errors
+    /// Data larger than the device can bind.
+    pub fn set_shapes(&mut self, gpu: &Gpu, shapes: &[RigidShape]) -> Result<(), RenderError> {
+        Ok(self.bodies.set_shapes(gpu, shapes)?)
+    }
+
+    /// Makes targets for another picture size; the same size costs nothing.
+    ///
+    /// # Errors
+    /// A size the device cannot hold; the old one stays.
+    pub fn resize(&mut self, gpu: &Gpu, size: [u32; 2]) -> Result<(), RenderError> {
+        if size != self.targets.size {
+            self.targets = Targets::new(gpu, size, self.samples)?;
+            self.resolved_light = self.tonemap.bind(gpu, &self.targets);
+        }
+        Ok(())
+    }
+
+    /// Width and height of the pictures, in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.targets.size
+    }
+
+    /// Records and submits one frame into `shown`. Opaque layers come near to far, so that what is
+    /// hidden is not shaded; the order does not show.
+    ///
+    /// # Errors
+    /// Bad input, named; the device's own errors.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        input: &FrameInput<'_>,
+        shown: &wgpu::TextureView,
+        timer: &mut PassTimer,
+    ) -> Result<(), RenderError> {
+        self.write(gpu, input)?;
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+
+        let mut pass = self.shadow.begin(&mut encoder, timer.render("shadow"));
+        pass.set_bind_group(1, &self.groups.frame_group, &[]);
+        self.bodies.draw_shadow(&mut pass);
+        drop(pass);
+
+        let mut pass = self.targets.begin(&mut encoder, timer.render("scene"));
+        pass.set_bind_group(1, &self.groups.frame_group, &[]);
+        pass.set_bind_group(2, &self.groups.shadow_group, &[]);
+        self.bodies.draw(&mut pass);
+        self.terrain.draw(&mut pass);
+        self.sky.draw(&mut pass);
+        self.overlay.draw(&mut pass);
+        drop(pass);
+
+        let times = timer.render("tonemap");
+        self.tonemap
+            .draw(&mut encoder, &self.resolved_light, shown, times);
+
+        timer.finish_frame(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        timer.collect(gpu);
+        Ok(gpu.check()?)
+    }
+
+    /// Writes what the layers need for this frame.
+    fn write(&mut self, gpu: &Gpu, input: &FrameInput<'_>) -> Result<(), RenderError> {
+        let size = self.targets.size;
+        let aspect = size[0] as f32 / size[1] as f32;
+        let light = input.sun.daylight();
+        let casters = self.bodies.write(gpu, input.view, input.bodies)?;
+        let fit = ShadowFit::new(&light, input.view, &casters);
+        let reach_m = 60.0;
+        let frame = Frame::new(input.view, size, &light, &fit, reach_m, input.time_s);
+        self.groups.write(gpu, frame)?;
+        self.terrain.write(gpu, input.view, aspect)?;
+        self.overlay.write(gpu, input.view, input.marks)?;
+        self.tonemap.write(gpu, input.exposure)?;
+        Ok(())
+    }
+}

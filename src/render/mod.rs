@@ -1,0 +1,63 @@
+//! Pictures of a meadow: one file per layer, drawn in the order of [`Renderer::draw`].
+//!
+//! Pipelines and targets live as long as the renderer, the ground and the shapes as long as a
+//! scene, everything else for one frame. All positions go to the device relative to the eye.
+
+mod bodies;
+mod camera;
+mod error;
+mod frame;
+mod overlay;
+mod picture;
+mod pipeline;
+mod shadow;
+mod sky;
+mod targets;
+mod terrain;
+mod tonemap;
+mod view_group;
+
+pub use bodies::BodyInstance;
+pub use camera::{Frustum, View};
+pub use error::RenderError;
+pub use frame::{FrameInput, Renderer};
+pub use overlay::{TileMark, TileTone};
+pub use picture::{Picture, PictureTarget};
+pub use sky::{Daylight, Sun};
+pub use terrain::GroundLook;
+pub use tonemap::Exposure;
+
+use crate::gpu::GpuStruct;
+use crate::gpu::layout::StructLayout;
+use crate::gpu::wgsl::WgslFile;
+use crate::wgsl_file;
+use terrain::{CHUNK_SAMPLES, LAND_RINGS_M};
+
+/// Format in which light is added up before it is shown.
+const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// The shaders of this layer and what only they import.
+pub const SHADERS: &[WgslFile] = &[
+    wgsl_file!("shared/frame.wgsl"),
+    wgsl_file!("shared/light.wgsl"),
+    wgsl_file!("shared/noise.wgsl"),
+    wgsl_file!("shared/screen.wgsl"),
+    wgsl_file!("shared/shadow.wgsl"),
+    wgsl_file!("bodies.wgsl"),
+    wgsl_file!("overlay.wgsl"),
+    wgsl_file!("sky.wgsl"),
+    wgsl_file!("terrain.wgsl", CHUNK_SAMPLES, LAND_RINGS_M),
+    wgsl_file!("tonemap.wgsl"),
+];
+
+/// Layouts of the structs that the shaders of this layer read.
+pub fn layouts() -> Vec<StructLayout> {
+    vec![
+        view_group::Frame::layout(),
+        bodies::BodyRecord::layout(),
+        overlay::OverlayBox::layout(),
+        terrain::Ground::layout(),
+        terrain::Chunk::layout(),
+        tonemap::Tonemap::layout(),
+    ]
+}
