@@ -6,8 +6,9 @@
 //! segments. Between entries they are mixed bilinearly and come out slightly too short, so whoever
 //! follows them from root to tip makes them unit vectors first.
 //!
-//! Source: P15 section 3.2 tabulates the solutions of eq. 12 over k′. Deviation: a second axis for
-//! the lean, without which the slope of the shape is infinite at the critical stiffness.
+//! Source: P15 section 2.3, which keeps the solutions of eq. 12 over k′ in a texture. Deviations:
+//! directions instead of end points; a second axis for the lean, without which the slope of the
+//! shape is infinite at the critical stiffness.
 //!
 //! Limits: stated by [`BladeTable::max_error`]; 1.9e-4 of a blade's length for the default kind of
 //! grass. A kind whose stiffness range holds the critical value and whose lean starts at 0 is off
