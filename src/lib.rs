@@ -16,10 +16,13 @@
 //! app      command line, window, panels (feature `app`)
 //! ```
 
+#[cfg(feature = "app")]
+pub mod app;
 pub mod base;
 pub mod bodies;
 pub mod field;
 pub mod gpu;
+pub mod run;
 pub mod scene;
 pub mod sim;
 pub mod terrain;

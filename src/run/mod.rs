@@ -1,6 +1,7 @@
 //! Running scenes: the clock, what is measured, what is judged, reports and benches.
 
 pub mod engine;
+mod exit;
 pub mod judge;
 pub mod scenario;
 pub mod swept;
@@ -8,6 +9,7 @@ pub mod timeline;
 pub mod watch;
 
 pub use engine::{Engine, EngineChoice};
+pub use exit::Exit;
 pub use judge::Verdict;
 pub use scenario::{Outcome, RunError, RunOptions, run_scene};
 pub use timeline::Timeline;
