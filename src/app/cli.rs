@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
-use super::commands::{blade_shape, list};
+use super::commands::{blade_shape, list, run};
 
 /// Responsive grass: bodies press real imprints into a meadow.
 ///
@@ -23,6 +23,7 @@ asset is invalid; 4 a needed adapter or feature is missing; 5 internal error.";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    Run(run::Arguments),
     BladeShape(blade_shape::Arguments),
     List(list::Arguments),
     /// Print the JSON schema of a scene

@@ -1,6 +1,7 @@
 //! Why a command ended without a result.
 
 use std::io;
+use std::path::{Path, PathBuf};
 
 use crate::field::blade_shape::ShapeError;
 use crate::gpu::GpuError;
@@ -17,9 +18,10 @@ pub enum Failure {
     Scene(#[from] SceneError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// stdout or a file of results.
-    #[error("cannot write the result: {0}")]
+    #[error("cannot write to stdout: {0}")]
     Output(#[from] io::Error),
+    #[error("cannot write {}: {source}", path.display())]
+    File { path: PathBuf, source: io::Error },
 }
 
 impl Failure {
@@ -30,7 +32,15 @@ impl Failure {
             Self::Scene(_) => Exit::Invalid,
             Self::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }) => Exit::NoAdapter,
             Self::Output(_) if self.is_closed_pipe() => Exit::Ok,
-            Self::Gpu(_) | Self::Output(_) => Exit::Internal,
+            Self::Gpu(_) | Self::Output(_) | Self::File { .. } => Exit::Internal,
+        }
+    }
+
+    /// A file of results that cannot be written.
+    pub fn file(path: &Path, source: io::Error) -> Self {
+        Self::File {
+            path: path.to_owned(),
+            source,
         }
     }
 

@@ -3,6 +3,7 @@
 pub mod blade_shape;
 pub mod doctor;
 pub mod list;
+pub mod run;
 mod schema;
 
 use std::io;
@@ -19,6 +20,7 @@ use crate::run::Exit;
 pub fn run(command: Command) -> Result<Exit, Failure> {
     let out = &mut io::stdout().lock();
     match command {
+        Command::Run(arguments) => run::run(&arguments, out),
         Command::BladeShape(arguments) => blade_shape::run(&arguments, out),
         Command::List(arguments) => list::run(&arguments, out),
         Command::Schema => schema::run(out),
