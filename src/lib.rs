@@ -16,6 +16,8 @@
 //! app      command line, window, panels (feature `app`)
 //! ```
 
+#[cfg(feature = "app")]
+pub mod app;
 pub mod base;
 pub mod bodies;
 pub mod field;

@@ -1,1 +1,5 @@
-fn main() {}
+//! The `sward` program; everything is in the library.
+
+fn main() -> std::process::ExitCode {
+    sward::app::main()
+}

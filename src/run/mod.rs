@@ -1,13 +1,20 @@
 //! Running scenes: the clock, what is measured, what is judged, reports and benches.
 
 pub mod engine;
+mod exit;
 pub mod judge;
+pub mod junit;
+mod pass_times;
+pub mod report;
 pub mod scenario;
 pub mod swept;
+pub mod table;
 pub mod timeline;
 pub mod watch;
 
 pub use engine::{Engine, EngineChoice};
+pub use exit::Exit;
 pub use judge::Verdict;
+pub use pass_times::PassTimes;
 pub use scenario::{Outcome, RunError, RunOptions, run_scene};
 pub use timeline::Timeline;

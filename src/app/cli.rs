@@ -1,0 +1,33 @@
+//! The command line.
+
+use clap::{Parser, Subcommand};
+
+use super::commands::{blade_shape, list, run};
+
+/// Responsive grass: bodies press real imprints into a meadow.
+///
+/// stdout carries the result only; logs and progress go to stderr.
+#[derive(Debug, Parser)]
+#[command(name = "sward", version, arg_required_else_help = true, after_help = EXIT_CODES)]
+pub struct Cli {
+    /// Say more on stderr.
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes: 0 all well; 1 an expectation failed or a limit was exceeded; 2 usage; 3 a scene or \
+asset is invalid; 4 a needed adapter or feature is missing; 5 internal error.";
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Run(run::Arguments),
+    BladeShape(blade_shape::Arguments),
+    List(list::Arguments),
+    /// Print the JSON schema of a scene
+    Schema,
+    /// Show the graphics adapters, their limits and features, and what these mean
+    Doctor,
+}

@@ -1,0 +1,29 @@
+//! The commands: one file each, with its arguments and what it prints.
+
+pub mod blade_shape;
+pub mod doctor;
+pub mod list;
+pub mod run;
+mod schema;
+
+use std::io;
+
+use super::Failure;
+use super::cli::Command;
+use crate::run::Exit;
+
+/// Runs one command.
+///
+/// # Errors
+///
+/// The command's own; each knows its exit code.
+pub fn run(command: Command) -> Result<Exit, Failure> {
+    let out = &mut io::stdout().lock();
+    match command {
+        Command::Run(arguments) => run::run(&arguments, out),
+        Command::BladeShape(arguments) => blade_shape::run(&arguments, out),
+        Command::List(arguments) => list::run(&arguments, out),
+        Command::Schema => schema::run(out),
+        Command::Doctor => doctor::run(out),
+    }
+}

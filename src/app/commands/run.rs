@@ -1,0 +1,175 @@
+//! `sward run`.
+
+use std::fs;
+use std::io::{self, IsTerminal, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::app::Failure;
+use crate::run::report::{Report, Scenario};
+use crate::run::{Engine, EngineChoice, Exit, RunError, RunOptions, junit, run_scene, table};
+use crate::scene::{limits, load_scene};
+use crate::sim::Grass;
+
+/// Run scenarios without a window and check their expectations
+#[derive(Args, Debug)]
+pub struct Arguments {
+    /// Scene files
+    #[arg(value_name = "SCENE", required = true)]
+    scenes: Vec<PathBuf>,
+    /// What simulates the grass; by default the gpu on a hardware adapter, else the cpu
+    #[arg(long, value_enum)]
+    engine: Option<EngineName>,
+    /// Frames per second; the motion does not depend on it
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 60.0,
+        allow_negative_numbers = true
+    )]
+    hz: f64,
+    /// Length of a sub-step instead of the scene's
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    substep: Option<f64>,
+    /// Seed of the grass instead of the scene's
+    #[arg(long, value_name = "N")]
+    seed: Option<u32>,
+    /// Another folder in which assets are looked up; may be repeated
+    #[arg(long, value_name = "DIR")]
+    assets: Vec<PathBuf>,
+    /// Print the report as JSON
+    #[arg(long)]
+    json: bool,
+    /// Also write the report into this folder, as report.json and report.txt
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Also write the report as JUnit XML
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum EngineName {
+    Cpu,
+}
+
+/// Runs all scenes and prints the report.
+pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
+    let options = options(arguments)?;
+    let mut report = Report::new("cpu", None, options.hz);
+    log::info!("engine: {}", report.engine);
+    for path in &arguments.scenes {
+        let scenario = run_one(path, arguments, &options);
+        if let Some(error) = &scenario.error {
+            eprintln!("sward: {error}");
+        }
+        report.scenarios.push(scenario);
+    }
+    write_files(&report, arguments)?;
+    let printed = if arguments.json {
+        print_json(&report, out)
+    } else {
+        table::write_table(&report, out)
+    };
+    match printed {
+        // Whoever closed the pipe still gets the verdict as the exit code.
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(report.exit()),
+    }
+}
+
+fn options(arguments: &Arguments) -> Result<RunOptions, Failure> {
+    let engine = match arguments.engine {
+        Some(EngineName::Cpu) => EngineChoice::Cpu,
+        None => EngineChoice::Auto,
+    };
+    if let Some(substep_s) = arguments.substep {
+        let limit = limits::SUBSTEP;
+        if !(limit.min..=limit.max).contains(&substep_s) {
+            let text = format!("--substep {substep_s}: give {limit}");
+            return Err(Failure::Usage(text));
+        }
+    }
+    if !(1.0..=10_000.0).contains(&arguments.hz) {
+        return Err(Failure::Usage(RunError::Rate(arguments.hz).to_string()));
+    }
+    Ok(RunOptions {
+        engine,
+        hz: arguments.hz,
+        substep_s: arguments.substep,
+        seed: arguments.seed,
+    })
+}
+
+/// Runs one scene; whatever goes wrong is part of the report, so that the others still run.
+fn run_one(path: &Path, arguments: &Arguments, options: &RunOptions) -> Scenario {
+    let name = path
+        .file_stem()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy()
+        .into_owned();
+    let loaded = match load_scene(path, &arguments.assets) {
+        Ok(loaded) => loaded,
+        Err(error) => return Scenario::broken(name, error.to_string(), Exit::Invalid),
+    };
+    let bar = progress_bar(&name);
+    let outcome = catch_unwind(AssertUnwindSafe(|| {
+        let engine = Engine::Cpu(Grass::new());
+        let progress = |share: f64| bar.set_position((share * 1000.0) as u64);
+        run_scene(&loaded, options, engine, progress).map(|outcome| Scenario::of(&outcome))
+    }));
+    bar.finish_and_clear();
+    match outcome {
+        Ok(Ok(scenario)) => scenario,
+        Ok(Err(error)) => {
+            let exit = match error {
+                RunError::Meadow { .. } => Exit::Invalid,
+                RunError::Rate(_) => Exit::Usage,
+            };
+            Scenario::broken(name, error.to_string(), exit)
+        }
+        Err(_) => {
+            let error = format!("{name}: internal error, see the message above");
+            Scenario::broken(name, error, Exit::Internal)
+        }
+    }
+}
+
+fn progress_bar(name: &str) -> ProgressBar {
+    if !io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent}% {eta}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(1000)
+        .with_style(style)
+        .with_message(name.to_owned())
+}
+
+fn print_json(report: &Report, out: &mut impl Write) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, report)?;
+    writeln!(out)
+}
+
+fn write_files(report: &Report, arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(folder) = &arguments.out {
+        fs::create_dir_all(folder).map_err(|e| Failure::file(folder, e))?;
+        let mut json = Vec::new();
+        print_json(report, &mut json)?;
+        write_file(&folder.join("report.json"), &json)?;
+        let mut text = Vec::new();
+        table::write_table(report, &mut text)?;
+        write_file(&folder.join("report.txt"), &text)?;
+    }
+    if let Some(file) = &arguments.junit {
+        write_file(file, junit::junit(report).as_bytes())?;
+    }
+    Ok(())
+}
+
+fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    fs::write(path, bytes).map_err(|e| Failure::file(path, e))
+}

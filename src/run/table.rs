@@ -1,0 +1,225 @@
+//! The report as text for people.
+
+use std::io::{self, Write};
+
+use super::report::{Collider, Expectation, Metrics, Report, Scenario};
+
+/// Writes the whole report.
+///
+/// # Errors
+///
+/// The writer's.
+pub fn write_table(report: &Report, out: &mut impl Write) -> io::Result<()> {
+    for scenario in &report.scenarios {
+        write_scenario(scenario, out)?;
+    }
+    let passed = report.scenarios.iter().filter(|s| s.passed).count();
+    let engine = report.engine;
+    write!(
+        out,
+        "{passed} of {} scenarios passed, {engine} engine",
+        report.scenarios.len()
+    )?;
+    match &report.adapter {
+        Some(adapter) => writeln!(out, " on {} ({})", adapter.name, adapter.driver),
+        None => writeln!(out),
+    }
+}
+
+fn write_scenario(scenario: &Scenario, out: &mut impl Write) -> io::Result<()> {
+    if let Some(error) = &scenario.error {
+        return writeln!(out, "{}: NOT RUN\n  {error}\n", scenario.name);
+    }
+    let verdict = if scenario.passed { "passed" } else { "FAILED" };
+    writeln!(
+        out,
+        "{}: {verdict}, {:.2} s simulated in {:.2} s, {} sub-steps",
+        scenario.name, scenario.seconds_simulated, scenario.wall_s, scenario.ticks
+    )?;
+    for expectation in &scenario.expectations {
+        write_expectation(expectation, out)?;
+    }
+    write_metrics(&scenario.metrics, out)?;
+    write_list(out, "colliders", scenario.colliders.iter().map(collider))?;
+    let passes = scenario.pass_ms.iter();
+    write_list(
+        out,
+        "median ms",
+        passes.map(|(pass, ms)| format!("{pass} {ms:.3}")),
+    )?;
+    if let Some(hash) = &scenario.state_hash {
+        writeln!(out, "  state hash   {hash}")?;
+    }
+    writeln!(out)
+}
+
+fn write_expectation(expectation: &Expectation, out: &mut impl Write) -> io::Result<()> {
+    let verdict = match expectation.passed {
+        Some(true) => "ok  ",
+        Some(false) => "FAIL",
+        None => "n/a ",
+    };
+    write!(out, "  {verdict}  ")?;
+    if let Some(at) = expectation.at {
+        write!(out, "at {at} s: ")?;
+    }
+    write!(out, "{}", expectation.what)?;
+    let unit = expectation.unit;
+    let value = |v: f64| {
+        if unit.is_empty() {
+            number(v)
+        } else {
+            format!("{} {unit}", number(v))
+        }
+    };
+    if let Some(limit) = expectation.limit {
+        write!(out, " [{}]", value(limit))?;
+    }
+    if let Some(measured) = expectation.measured {
+        write!(out, ": {}", value(measured))?;
+    }
+    if let Some(reason) = &expectation.reason {
+        write!(out, " ({reason})")?;
+    }
+    writeln!(out)
+}
+
+fn write_metrics(metrics: &Metrics, out: &mut impl Write) -> io::Result<()> {
+    let mm = |m: f64| format!("{:.3} mm", m * 1e3);
+    writeln!(
+        out,
+        "  penetration  {} at most, {} for 99.9%, {} rms; over-push {}; {} pinched",
+        mm(metrics.max_penetration_m),
+        mm(metrics.p999_penetration_m),
+        mm(metrics.rms_penetration_m),
+        mm(metrics.over_push_m),
+        metrics.pinched_vertices
+    )?;
+    writeln!(
+        out,
+        "  shape        strain {:.2}% at most, offset {:.3} m at most{}",
+        metrics.max_length_strain * 100.0,
+        metrics.max_offset_m,
+        metrics
+            .jitter_m_per_frame
+            .map_or(String::new(), |j| format!(", jitter {} a frame", mm(j)))
+    )?;
+    let seconds = |s: Option<f64>| s.map_or("-".into(), |s| format!("{s:.3} s"));
+    writeln!(
+        out,
+        "  recovery     half {}, tenth {}, hundredth {}",
+        seconds(metrics.recovery_half_s),
+        seconds(metrics.recovery_tenth_s),
+        seconds(metrics.recovery_hundredth_s)
+    )?;
+    writeln!(
+        out,
+        "  peak         {} of {} tiles, {} plants, {} bytes of state",
+        metrics.tiles_active_peak,
+        metrics.tiles_total,
+        metrics.plants_simulated_peak,
+        metrics.state_bytes_peak
+    )?;
+    for (count, what) in [
+        (metrics.nan_count, "values that are not finite"),
+        (
+            metrics.capped_sweeps,
+            "sub-steps in which a body needed more sweeps than allowed",
+        ),
+        (
+            metrics.refused_tiles,
+            "tiles that could not wake for want of state",
+        ),
+    ] {
+        if count > 0 {
+            writeln!(out, "  LIMIT        {count} {what}")?;
+        }
+    }
+    write_list(out, "quarantined", metrics.quarantined.iter().cloned())
+}
+
+fn collider(collider: &Collider) -> String {
+    let parts = [
+        (collider.cube_parts, "cube"),
+        (collider.analytic_parts, "analytic"),
+    ];
+    let parts = parts
+        .iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, by)| match count {
+            1 => (*by).to_owned(),
+            n => format!("{n} × {by}"),
+        });
+    format!(
+        "{} {}",
+        collider.body,
+        parts.collect::<Vec<_>>().join(" + ")
+    )
+}
+
+fn write_list(
+    out: &mut impl Write,
+    title: &str,
+    items: impl Iterator<Item = String>,
+) -> io::Result<()> {
+    let items: Vec<String> = items.collect();
+    if items.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "  {title:<11}  {}", items.join(", "))
+}
+
+/// A number with the digits that matter: whole, or four significant ones.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if value == value.trunc() && size < 1e15 {
+        format!("{value}")
+    } else if (1e-3..1e4).contains(&size) {
+        let decimals = (3 - size.log10().floor() as i32).clamp(0, 6) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::report::tests::sample;
+
+    #[test]
+    fn a_report_in_words() {
+        let mut text = Vec::new();
+        write_table(&sample(), &mut text).expect("a vector takes everything");
+        let text = String::from_utf8(text).expect("text");
+        assert!(text.contains("ball & roll: FAILED, 4.00 s simulated in 0.50 s, 480 sub-steps"));
+        assert!(
+            text.contains("FAIL  at 2 s: plants lean at least 40 ° [40 °]: 12.25 °"),
+            "{text}"
+        );
+        assert!(
+            text.contains("n/a   the state hash is 00 (only the cpu"),
+            "{text}"
+        );
+        assert!(text.contains("colliders    ball cube"), "{text}");
+        assert!(text.contains("gone: NOT RUN\n  no such <file>"), "{text}");
+        assert!(
+            text.ends_with("0 of 2 scenarios passed, cpu engine\n"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn numbers_keep_four_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (40.0, "40"),
+            (12.25, "12.25"),
+            (0.012345, "0.01234"),
+            (1.5e-5, "1.500e-5"),
+            (123456.7, "1.235e5"),
+        ] {
+            assert_eq!(number(value), text);
+        }
+    }
+}
