@@ -1,10 +1,13 @@
 //! One scenario from start to end, without a window.
 
+use std::collections::BTreeMap;
+
 use crate::scene::LoadedScene;
 use crate::sim::{Meadow, MeadowError};
 
 use super::engine::{Engine, EngineChoice};
 use super::judge::{Judge, Verdict};
+use super::pass_times::PassTimes;
 use super::timeline::Timeline;
 use super::watch::Watch;
 
@@ -39,6 +42,8 @@ pub struct Outcome {
     /// The meadow as it stands at the end.
     pub meadow: Meadow,
     pub engine: Engine,
+    /// Median milliseconds per sub-step of each pass.
+    pub pass_ms: BTreeMap<String, f64>,
     /// Wall-clock seconds of the run without setting up.
     pub wall_s: f64,
 }
@@ -90,12 +95,14 @@ pub fn run_scene(
         .map(|expectation| Judge::new(expectation, &meadow))
         .collect();
     let mut watch = Watch::default();
+    let mut passes = PassTimes::default();
     let mut timeline = Timeline::unlimited(meadow.scene.solver.substep_s);
     let frames = (duration_s * options.hz).ceil() as u64;
     let started = std::time::Instant::now();
     for frame in 0..frames {
         for _ in 0..timeline.advance(1.0 / options.hz) {
             engine.tick(&mut meadow).map_err(named)?;
+            passes.tick(&engine.pass_ms());
             for judge in &mut judges {
                 judge.tick(&meadow, &mut engine);
             }
@@ -114,6 +121,7 @@ pub fn run_scene(
         watch,
         meadow,
         engine,
+        pass_ms: passes.median_ms(),
         wall_s,
     })
 }
