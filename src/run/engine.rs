@@ -58,10 +58,16 @@ impl Engine {
         }
     }
 
-    /// Plants touched within the last `ticks` ticks that stand at least `far_m` off.
-    pub fn bent(&mut self, meadow: &Meadow, ticks: u32, far_m: f64) -> BTreeSet<(TileId, u32)> {
+    /// Plants that a body has pushed at least `far_m` off within the last `ticks` ticks.
+    pub fn bent(
+        &mut self,
+        meadow: &Meadow,
+        body: u32,
+        ticks: u32,
+        far_m: f64,
+    ) -> BTreeSet<(TileId, u32)> {
         match self {
-            Self::Cpu(grass) => measure::bent(meadow, grass, ticks, far_m),
+            Self::Cpu(grass) => measure::bent(meadow, grass, body, ticks, far_m),
         }
     }
 

@@ -105,10 +105,14 @@ impl Judge {
                 body,
                 at_s,
                 at_least,
-            } if due(*at_s) => {
-                let swept = self.swept.as_ref().map(|(_, swept)| swept);
-                Some(imprint(meadow, engine, body, swept, *at_least, *at_s))
-            }
+            } if due(*at_s) => Some(imprint(
+                meadow,
+                engine,
+                body,
+                self.swept.as_ref(),
+                *at_least,
+                *at_s,
+            )),
             _ => None,
         };
     }
@@ -291,22 +295,25 @@ fn imprint(
     meadow: &Meadow,
     engine: &mut Engine,
     body: &str,
-    swept: Option<&Swept>,
+    swept: Option<&(u32, Swept)>,
     at_least: f64,
     at_s: f64,
 ) -> Verdict {
     let what = format!("imprint of `{body}` overlaps its path");
+    let Some((id, swept)) = swept else {
+        return Verdict {
+            measured: None,
+            at_s: Some(at_s),
+            reason: Some("no body of that name is in the scene".into()),
+            ..verdict(what, false, 0.0, at_least, "")
+        };
+    };
     // Only what happened within half the recovery time counts, so that no tile of it rests yet;
     // whether it was swept and bent may have been told a little earlier.
     let (recent, all) = (meadow.recovery_ticks() / 2, meadow.recovery_ticks());
-    let swept_since = |ticks| {
-        swept
-            .map(|s| s.since(meadow.ticks, ticks))
-            .unwrap_or_default()
-    };
-    let bent_lately = engine.bent(meadow, recent, BENT_M);
-    let either = &swept_since(recent) | &bent_lately;
-    let both = &swept_since(all) & &engine.bent(meadow, all, BENT_M);
+    let bent_lately = engine.bent(meadow, *id, recent, BENT_M);
+    let either = &swept.since(meadow.ticks, recent) | &bent_lately;
+    let both = &swept.since(meadow.ticks, all) & &engine.bent(meadow, *id, all, BENT_M);
     let both = either.intersection(&both).count() as f64;
     let either = either.len() as f64;
     let overlap = if either > 0.0 { both / either } else { 0.0 };

@@ -6,7 +6,7 @@ use crate::base::{Pose, Real, Vec3};
 
 use super::depth_cube::DepthCube;
 use super::parts::Part;
-use super::solid::{Exit, NO_FACE, Solid};
+use super::solid::{Exit, NO_FACE, Reach, Solid};
 use super::work::Contact;
 
 /// One part near a tile, ready for its vertices.
@@ -76,17 +76,28 @@ impl<'a, R: Real> Touch<'a, R> {
 
     /// The way out for a vertex inside the part at `pose`, with its normal turned into the anchor's
     /// coordinates. `memory` is the vertex's word about the face it left through last; it is kept
-    /// up to date.
-    pub fn exit(&self, pose: &Pose<R>, vertex: Vec3<R>, memory: &mut u32) -> Option<Exit<R>> {
+    /// up to date. `segment` is the lower node and the length of the vertex's segment where only
+    /// ways out in its reach count.
+    pub fn exit(
+        &self,
+        pose: &Pose<R>,
+        vertex: Vec3<R>,
+        memory: &mut u32,
+        segment: Option<(Vec3<R>, R)>,
+    ) -> Option<Exit<R>> {
         let p = pose.inverse_point(vertex);
+        let reach = segment.map_or_else(Reach::anywhere, |(from, length)| Reach {
+            from: pose.inverse_point(from),
+            length,
+        });
         let kept = if *memory & !FACE_MASK == self.key && *memory & FACE_MASK != 0 {
             (*memory & FACE_MASK) - 1
         } else {
             NO_FACE
         };
         let exit = match self.collider {
-            ColliderOf::Cube(cube) => cube.exit(p, kept),
-            ColliderOf::Analytic(solid) => solid.exit(p, kept),
+            ColliderOf::Cube(cube) => cube.exit(p, kept, &reach),
+            ColliderOf::Analytic(solid) => solid.exit(p, kept, &reach),
         }?;
         *memory = self.key | ((exit.face + 1) & FACE_MASK);
         Some(Exit {
@@ -94,6 +105,12 @@ impl<'a, R: Real> Touch<'a, R> {
             ..exit
         })
     }
+}
+
+/// The body through whose face a vertex was pushed out last, from the vertex's memory; `None` if
+/// none was.
+pub fn body_of(memory: u32) -> Option<u32> {
+    (memory & FACE_MASK != 0).then_some(memory >> (FACE_BITS + PART_BITS))
 }
 
 /// Body and part of a contact as the upper bits of a vertex's memory. Bodies share keys beyond

@@ -17,7 +17,7 @@
 
 use crate::base::{Real, Vec3, vec3};
 
-use super::solid::{Exit, KEEP_FACE, Plane, Solid};
+use super::solid::{Choice, Exit, Plane, Reach, Solid};
 
 /// Set where a texel's ray met the part.
 pub const HIT: u32 = 1 << 31;
@@ -25,6 +25,8 @@ pub const HIT: u32 = 1 << 31;
 pub const HIDDEN: u32 = 1 << 30;
 /// Depth is stored as a fraction of the face's extent in units of 2⁻²⁹.
 pub const DEPTH_STEPS: f64 = 536_870_912.0;
+/// A way out through a hidden face counts as longer by this, in metres: more than any body's size.
+const HIDDEN_M: f64 = 1000.0;
 const DEPTH_MASK: u32 = HIDDEN - 1;
 
 /// The six faces of one part. Face 2a looks along −axis a from the upper bound, face 2a + 1 along
@@ -117,36 +119,30 @@ impl DepthCube {
     }
 
     /// The way out for a point inside, or `None` outside. `kept` is the face of the last sub-step
-    /// or [`NO_FACE`].
-    pub fn exit<R: Real>(&self, p: Vec3<R>, kept: u32) -> Option<Exit<R>> {
+    /// or [`NO_FACE`](super::solid::NO_FACE).
+    pub fn exit<R: Real>(&self, p: Vec3<R>, kept: u32, reach: &Reach<R>) -> Option<Exit<R>> {
         if !self.inside(p) {
             return None;
         }
-        let mut best: Option<(Exit<R>, bool)> = None;
-        let mut keep: Option<Exit<R>> = None;
+        let mut choice = Choice::new(kept);
         for face in 0..6 {
             let surface = self.sample(p, face, true)?;
-            let depth = self.behind(p, face)? * axis(surface.normal, face / 2).abs();
-            let exit = Exit {
-                depth,
-                normal: surface.normal,
-                face,
-            };
-            if face == kept && !surface.hidden {
-                keep = Some(exit);
+            let normal = surface.normal;
+            let depth = self.behind(p, face)? * axis(normal, face / 2).abs();
+            let mut cost = reach.cost(p, depth, normal);
+            if surface.hidden {
+                cost += R::of(HIDDEN_M);
             }
-            let nearer = best.is_none_or(|(b, hidden)| {
-                (hidden && !surface.hidden) || (hidden == surface.hidden && depth < b.depth)
-            });
-            if nearer {
-                best = Some((exit, surface.hidden));
-            }
+            choice.offer(
+                cost,
+                Exit {
+                    depth,
+                    normal,
+                    face,
+                },
+            );
         }
-        let (best, _) = best?;
-        Some(match keep {
-            Some(keep) if keep.depth * R::of(KEEP_FACE) <= best.depth => keep,
-            _ => best,
-        })
+        choice.take()
     }
 
     /// Masked bilinear sample of a face under a point.
@@ -414,11 +410,11 @@ mod tests {
             let cube = DepthCube::draw(&solid, 64, |_| false);
             for k in 0..20_000 {
                 let p = random(k);
-                if let Some(exit) = cube.exit(p, NO_FACE) {
+                if let Some(exit) = cube.exit(p, NO_FACE, &Reach::anywhere()) {
                     let out = p + exit.normal * exit.depth;
                     // One push may end inside next to an edge, where a texel mixes two faces; the
                     // second look at it, as every round does, must not.
-                    let out = match cube.exit(out, exit.face) {
+                    let out = match cube.exit(out, exit.face, &Reach::anywhere()) {
                         Some(again) => out + again.normal * again.depth,
                         None => out,
                     };
@@ -432,7 +428,9 @@ mod tests {
     fn no_way_out_leads_through_a_hidden_face() {
         let half = vec3(0.2, 0.2, 0.2);
         let cube = DepthCube::draw(&Solid::Box { half }, 32, |p| p.x > 0.199);
-        let exit = cube.exit(vec3(0.19, 0.1, 0.0), NO_FACE).expect("inside");
+        let exit = cube
+            .exit(vec3(0.19, 0.1, 0.0), NO_FACE, &Reach::anywhere())
+            .expect("inside");
         assert_eq!(exit.face, 2, "{exit:?}");
     }
 }

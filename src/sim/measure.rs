@@ -11,6 +11,7 @@ use crate::base::{Real, Vec3};
 use crate::field::grid::ground_in_anchor;
 use crate::field::{Bounds, Plant, TileId};
 
+use super::contact::body_of;
 use super::cpu::{poses, segment_length};
 use super::meadow::Meadow;
 use super::relax::largest_strain;
@@ -289,10 +290,11 @@ pub fn near<R: Real>(
 }
 
 /// Plants touched within the last `ticks` ticks whose last contact took a node at least `far_m`
-/// from its wind pose.
+/// from its wind pose, and of which body `body` has pushed a node.
 pub fn bent<R: Real>(
     meadow: &Meadow,
     state: &impl GrassState<R>,
+    body: u32,
     ticks: u32,
     far_m: f64,
 ) -> BTreeSet<(TileId, u32)> {
@@ -308,7 +310,9 @@ pub fn bent<R: Real>(
             }
             let segments = meadow.field.table.segments as usize;
             let offsets = &slab.offsets[place as usize * segments..][..segments];
-            if offsets.iter().any(|d| d.length().to_f64() >= far_m) {
+            let faces = &slab.faces[place as usize * segments..][..segments];
+            let far = offsets.iter().any(|d| d.length().to_f64() >= far_m);
+            if far && faces.iter().any(|&face| body_of(face) == Some(body)) {
                 found.insert((tile.tile, place));
             }
         }

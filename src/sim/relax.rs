@@ -89,8 +89,7 @@ pub fn respond<R: Real>(
         for round in 1..=settings.most_rounds {
             bend_springs(nodes, place, settings.bend);
             follow_pushed(nodes, pushed, place);
-            lay_out(nodes, faces, &bodies, place);
-            pushed = bodies.push_out(nodes, faces);
+            pushed = lay_out(nodes, faces, &bodies, place);
             keep_above_ground(nodes, place);
             rounds_used = rounds_used.max(round);
             let strain = largest_strain(nodes, place.segments, place.length);
@@ -118,8 +117,9 @@ impl<'a, R: Real> Bodies<'a, R> {
         let mut pushed = 0;
         for (touch, pose) in &self.posed {
             for (j, face) in faces.iter_mut().enumerate() {
-                if let Some(exit) = touch.exit(pose, nodes[j + 1], face) {
-                    nodes[j + 1] += exit.normal * exit.depth;
+                let node = nodes[j + 1];
+                if let Some(exit) = touch.exit(pose, node, face, None) {
+                    nodes[j + 1] = node + exit.normal * exit.depth;
                     pushed |= 1 << (j + 1);
                 }
             }
@@ -135,27 +135,27 @@ impl<'a, R: Real> Bodies<'a, R> {
         from: Vec3<R>,
         to: Vec3<R>,
         rest: Vec3<R>,
-        length: R,
         face: &mut u32,
-    ) -> Vec3<R> {
+        place: &Place<R>,
+    ) -> (Vec3<R>, bool) {
         let mut to = to;
+        let mut turned = false;
         for (touch, pose) in &self.posed {
-            let Some(exit) = touch.exit(pose, to, face) else {
+            let Some(exit) = touch.exit(pose, to, face, Some((from, place.length))) else {
                 continue;
             };
             let n = exit.normal;
             let along = (to - from).dot(n);
             let rise = along + exit.depth;
-            let run = length * length - rise * rise;
-            to = if run > R::ZERO {
+            let run = place.length * place.length - rise * rise;
+            if run > R::ZERO {
                 let sideways = (rest - n * rest.dot(n)).unit_or(across(n));
                 let flat = ((to - from) - n * along).unit_or(sideways);
-                from + n * rise + flat * run.sqrt()
-            } else {
-                to + n * exit.depth
-            };
+                to = from + n * rise + flat * run.sqrt();
+                turned = true;
+            }
         }
-        to
+        (to, turned)
     }
 }
 
@@ -202,21 +202,37 @@ fn follow_pushed<R: Real>(nodes: &mut Nodes<R>, pushed: u32, place: &Place<R>) {
 /// Moves nodes onto the rest length of their segments, from root to tip. A segment that would dip
 /// into the ground is laid on it at its full length (cutting it off there would shorten it), one
 /// that would end in a body is turned out of it.
-fn lay_out<R: Real>(nodes: &mut Nodes<R>, faces: &mut [u32], bodies: &Bodies<R>, place: &Place<R>) {
-    let length = place.length;
+fn lay_out<R: Real>(
+    nodes: &mut Nodes<R>,
+    faces: &mut [u32],
+    bodies: &Bodies<R>,
+    place: &Place<R>,
+) -> u32 {
+    let mut pushed = 0;
     for (j, face) in faces.iter_mut().enumerate() {
+        let from = nodes[j];
         let rest = (place.wind[j + 1] - place.wind[j]).unit_or(Vec3::UP);
-        let direction = (nodes[j + 1] - nodes[j]).unit_or(rest);
-        let mut next = nodes[j] + direction * length;
-        let height = ground_in_anchor(place.ground, place.anchor, next.x, next.z);
-        if next.y < height {
-            let rise = (height - nodes[j].y).clamp(-length, length);
-            let run = (length * length - rise * rise).max(R::ZERO).sqrt();
-            let flat = vec3(direction.x, R::ZERO, direction.z);
-            let sideways = vec3(rest.x, R::ZERO, rest.z).unit_or(vec3(R::ONE, R::ZERO, R::ZERO));
-            next = nodes[j] + flat.unit_or(sideways) * run + Vec3::UP * rise;
+        let direction = (nodes[j + 1] - from).unit_or(rest);
+        let next = place.lay_on_ground(from, from + direction * place.length, rest);
+        let (next, turned) = bodies.turn_out(from, next, rest, face, place);
+        nodes[j + 1] = place.lay_on_ground(from, next, rest);
+        pushed |= u32::from(turned) << (j + 1);
+    }
+    pushed
+}
+
+impl<R: Real> Place<'_, R> {
+    /// Turns a segment about its lower node until its upper one is on the ground, if it is below.
+    fn lay_on_ground(&self, from: Vec3<R>, to: Vec3<R>, rest: Vec3<R>) -> Vec3<R> {
+        let height = ground_in_anchor(self.ground, self.anchor, to.x, to.z);
+        if to.y >= height {
+            return to;
         }
-        nodes[j + 1] = bodies.turn_out(nodes[j], next, rest, length, face);
+        let rise = (height - from.y).clamp(-self.length, self.length);
+        let run = (self.length * self.length - rise * rise).max(R::ZERO).sqrt();
+        let sideways = vec3(rest.x, R::ZERO, rest.z).unit_or(vec3(R::ONE, R::ZERO, R::ZERO));
+        let flat = vec3(to.x - from.x, R::ZERO, to.z - from.z).unit_or(sideways);
+        from + flat * run + Vec3::UP * rise
     }
 }
 

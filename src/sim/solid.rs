@@ -46,6 +46,39 @@ pub struct Plane<R> {
     pub offset: R,
 }
 
+/// The segment whose upper node looks for a way out: one that the segment is too short for is no
+/// way out.
+#[derive(Clone, Copy, Debug)]
+pub struct Reach<R> {
+    /// The segment's lower node, in the space of the solid.
+    pub from: Vec3<R>,
+    /// Its length, in metres; less than 0 if anything can be reached.
+    pub length: R,
+}
+
+/// A way out of reach counts as longer by this, in metres: more than any body's size.
+const OUT_OF_REACH_M: f64 = 1000.0;
+
+impl<R: Real> Reach<R> {
+    /// Everything can be reached.
+    pub fn anywhere() -> Self {
+        Self {
+            from: Vec3::ZERO,
+            length: -R::ONE,
+        }
+    }
+
+    /// What the way out of `p` by `depth` along `normal` costs, in metres.
+    pub fn cost(&self, p: Vec3<R>, depth: R, normal: Vec3<R>) -> R {
+        let rise = (p - self.from).dot(normal) + depth;
+        if self.length >= R::ZERO && rise.abs() >= self.length {
+            depth + R::of(OUT_OF_REACH_M)
+        } else {
+            depth
+        }
+    }
+}
+
 /// The way out of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exit<R> {
@@ -159,7 +192,8 @@ impl<R: Real> Solid<R> {
 
     /// The way out for a point inside, or `None` outside. `kept` is the feature of the last
     /// sub-step or [`NO_FACE`].
-    pub fn exit(&self, p: Vec3<R>, kept: u32) -> Option<Exit<R>> {
+    pub fn exit(&self, p: Vec3<R>, kept: u32, reach: &Reach<R>) -> Option<Exit<R>> {
+        let cost = |depth, normal| reach.cost(p, depth, normal);
         let sideways = vec3(R::ONE, R::ZERO, R::ZERO);
         let single = |out: Vec3<R>, radius: R| {
             let depth = radius - out.length();
@@ -172,8 +206,8 @@ impl<R: Real> Solid<R> {
         match self {
             Self::Ball { radius } => single(p, *radius),
             Self::Capsule { radius, half } => single(from_axis(p, *half), *radius),
-            Self::Box { half } => nearest(6, kept, |face| box_face(p, *half, face)),
-            Self::Cylinder { radius, half } => nearest(3, kept, |face| match face {
+            Self::Box { half } => nearest(6, kept, cost, |face| box_face(p, *half, face)),
+            Self::Cylinder { radius, half } => nearest(3, kept, cost, |face| match face {
                 0 => {
                     let out = across(p);
                     (*radius - out.length(), out.unit_or(sideways))
@@ -181,7 +215,7 @@ impl<R: Real> Solid<R> {
                 1 => (*half - p.y, Vec3::UP),
                 _ => (*half + p.y, -Vec3::UP),
             }),
-            Self::Convex { planes, .. } => nearest(planes.len() as u32, kept, |face| {
+            Self::Convex { planes, .. } => nearest(planes.len() as u32, kept, cost, |face| {
                 let plane = planes[face as usize];
                 (plane.offset - plane.normal.dot(p), plane.normal)
             }),
@@ -189,38 +223,63 @@ impl<R: Real> Solid<R> {
     }
 }
 
-/// The nearest of `count` features that all have the point on their inner side.
+/// The cheapest of `count` features that all have the point on their inner side.
 fn nearest<R: Real>(
     count: u32,
     kept: u32,
+    cost: impl Fn(R, Vec3<R>) -> R,
     feature: impl Fn(u32) -> (R, Vec3<R>),
 ) -> Option<Exit<R>> {
-    let mut best: Option<Exit<R>> = None;
+    let mut choice = Choice::new(kept);
     for face in 0..count {
         let (depth, normal) = feature(face);
         if depth <= R::ZERO {
             return None;
         }
-        if best.is_none_or(|b| depth < b.depth) {
-            best = Some(Exit {
+        choice.offer(
+            cost(depth, normal),
+            Exit {
                 depth,
                 normal,
                 face,
-            });
+            },
+        );
+    }
+    choice.take()
+}
+
+/// The cheapest way out among those offered, or the kept one while no other is clearly cheaper.
+pub(super) struct Choice<R> {
+    kept: u32,
+    best: Option<(R, Exit<R>)>,
+    keep: Option<(R, Exit<R>)>,
+}
+
+impl<R: Real> Choice<R> {
+    pub fn new(kept: u32) -> Self {
+        Self {
+            kept,
+            best: None,
+            keep: None,
         }
     }
-    let best = best?;
-    if kept < count && kept != best.face {
-        let (depth, normal) = feature(kept);
-        if depth * R::of(KEEP_FACE) <= best.depth {
-            return Some(Exit {
-                depth,
-                normal,
-                face: kept,
-            });
+
+    pub fn offer(&mut self, cost: R, exit: Exit<R>) {
+        if exit.face == self.kept {
+            self.keep = Some((cost, exit));
+        }
+        if self.best.is_none_or(|(least, _)| cost < least) {
+            self.best = Some((cost, exit));
         }
     }
-    Some(best)
+
+    pub fn take(self) -> Option<Exit<R>> {
+        let (least, best) = self.best?;
+        Some(match self.keep {
+            Some((cost, keep)) if cost * R::of(KEEP_FACE) <= least => keep,
+            _ => best,
+        })
+    }
 }
 
 /// Face 0 is +x, 1 is −x, and so on: its depth and outward normal.
@@ -290,7 +349,7 @@ mod tests {
                 let word = |salt: u32| crate::base::philox::philox2x32([k, salt], 3, 7)[0];
                 let at = |salt: u32| f64::from(crate::base::philox::unit(word(salt))) - 0.5;
                 let p = vec3(at(1), at(2), at(3));
-                let exit = solid.exit(p, NO_FACE);
+                let exit = solid.exit(p, NO_FACE, &Reach::anywhere());
                 assert_eq!(exit.is_some(), solid.depth(p) > 0.0, "{solid:?} {p:?}");
                 if let Some(exit) = exit {
                     inside += 1;
@@ -307,10 +366,30 @@ mod tests {
     fn centres_and_axes_have_a_finite_way_out() {
         for solid in solids() {
             for p in [Vec3::ZERO, vec3(0.0, 0.1, 0.0)] {
-                let exit = solid.exit(p, NO_FACE).expect("inside");
+                let exit = solid.exit(p, NO_FACE, &Reach::anywhere()).expect("inside");
                 assert!(exit.normal.is_finite() && (exit.normal.length() - 1.0).abs() < 1e-12);
             }
         }
+    }
+
+    #[test]
+    fn a_way_out_must_be_in_the_segments_reach() {
+        let plank = Solid::Box {
+            half: vec3(1.0, 0.05, 0.2),
+        };
+        let face = |length: f64| {
+            let from = vec3(0.0, -0.05, 0.1);
+            let reach = Reach { from, length };
+            plank
+                .exit(vec3(0.0, 0.0, 0.17), NO_FACE, &reach)
+                .map(|e| e.face)
+        };
+        assert_eq!(face(0.12), Some(4), "3 cm to the side");
+        assert_eq!(
+            face(0.09),
+            Some(3),
+            "the side is 10 cm from the lower node, the bottom near"
+        );
     }
 
     #[test]
@@ -318,7 +397,10 @@ mod tests {
         let cube = Solid::Box {
             half: vec3(1.0, 1.0, 1.0),
         };
-        let face = |x: f64, kept| cube.exit(vec3(x, 0.5, 0.0), kept).map(|e| e.face);
+        let face = |x: f64, kept| {
+            cube.exit(vec3(x, 0.5, 0.0), kept, &Reach::anywhere())
+                .map(|e| e.face)
+        };
         assert_eq!(face(0.51, NO_FACE), Some(0));
         assert_eq!(face(0.51, 2), Some(2));
         assert_eq!(face(0.56, 2), Some(0));
