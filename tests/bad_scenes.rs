@@ -101,6 +101,29 @@ fn numbers_out_of_range() {
 }
 
 #[test]
+fn the_limits_themselves_are_allowed() {
+    for source in [
+        "(duration_s: 172800)",
+        "(solver: (substep_s: 0.06666666666666667, segments: 16, cube_resolution: 256, skin_m: 0.05))",
+        "(solver: (substep_s: 0.0001, recovery_s: 60, segments: 1, cube_resolution: 8, rounds: (1, 1)))",
+        "(grass: (density_per_m2: 10000, species: []))",
+        "(grass: (density_per_m2: 0, species: [(height_m: (0.001, 10), lean_deg: (0, 90))]))",
+        "(terrain: (ground: Flat(size_m: (0.1, 0.1), spacing_m: 0.5)))",
+        body!("shape: Ball(radius_m: 0.001), restitution: 1, mass: Density(50000)"),
+        body!("shape: Box(size_m: (100, 0.001, 100)), position_m: (500000, -500000, 0)"),
+        body!(
+            "shape: Compound(parts: [(shape: ConvexHull(points_m: [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]))])"
+        ),
+        body!("shape: Vehicle(chassis_m: (1, 1, 2), wheel_radius_m: 0.5, wheel_width_m: 0.2)"),
+        "(expect: [AllRest(by_s: 4), Lean(at_s: 0, near_m: (-8, 8), within_m: 1, at_most_deg: 0)])",
+    ] {
+        if let Err(error) = parse_scene("limit", source, &[]) {
+            panic!("{source}\n{error}");
+        }
+    }
+}
+
+#[test]
 fn bodies_that_cannot_be() {
     check! {
         body!("shape: Ball(radius_m: -1)") => "2:35" "bodies[0].shape.radius_m": "is -1", "0.001 to 100 m";
