@@ -1,8 +1,10 @@
 //! Scenes and assets that are wrong: each is refused with a sentence that names file, line,
 //! column, key and what would be right, and none makes the program panic or take much memory.
 
+use std::alloc::{GlobalAlloc, Layout, System};
 use std::fs;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use proptest::prelude::*;
 use sward::scene::assets::{Embedded, read_height_map, read_mesh};
@@ -168,10 +170,10 @@ fn scripts_cameras_and_expectations() {
 #[test]
 fn counts_over_budget() {
     check! {
-        "(terrain: (ground: Flat(size_m: (200000, 200000))))" => "1:20" "terrain.ground": "40000400001 height samples", "67108864";
+        "(terrain: (ground: Flat(size_m: (200000, 200000))))" => "1:20" "terrain.ground": "40000400001 height samples", "16777216";
         "(grass: (density_per_m2: 10000), solver: (tile_m: 32, seeding_cell_m: 8),\n terrain: (ground: Flat(size_m: (64, 64), spacing_m: 8)))" => "1:26" "grass.density_per_m2": "10240000 plants in a tile", "65536";
         "(solver: (tile_m: 8))" => "1:19" "solver.tile_m": "is 8 m", "0.5 m", "write 2 m";
-        "(terrain: (ground: Flat(size_m: (5000, 5000))))" => "1:20" "terrain.ground": "25000000 tiles", "16777216";
+        "(terrain: (ground: Flat(size_m: (5000, 5000), spacing_m: 2)))" => "1:20" "terrain.ground": "25000000 tiles", "16777216";
     }
     let many = "(shape: Ball(radius_m: 1), name: \"b\"),".repeat(4097);
     let text = parse_scene("many", &format!("(bodies: [{many}])"), &[]).expect_err("too many");
@@ -330,11 +332,38 @@ fn height_map() -> &'static [u8] {
 const EMPTY_GLB: &[u8] =
     b"glTF\x02\0\0\0\x30\0\0\0\x1c\0\0\0JSON{\"asset\":{\"version\":\"2.0\"}} ";
 
+/// The system's allocator, which also remembers the largest block ever asked for.
+struct Watched;
+
+static LARGEST_BLOCK: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call goes to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Watched {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        LARGEST_BLOCK.fetch_max(layout.size(), Ordering::Relaxed);
+        // SAFETY: the caller's promise about `layout` is passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise about `block` and `layout` is passed on.
+        unsafe { System.dealloc(block, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Watched = Watched;
+
+/// Files below are at most 64 KiB, which a PNG may unpack 1032-fold; nothing else may grow so.
+const LARGEST_ALLOWED: usize = (1 << 16) * 1032 + (1 << 20);
+
 fn never_panics(name: &str, bytes: &[u8]) {
     let files = [(name, bytes)];
-    // Errors are what most of these bytes deserve; reaching the next line is the test.
+    // Errors are what most of these bytes deserve; coming back is the test.
     let _ = read_mesh(name, &Embedded(&files));
     let _ = read_height_map(name, &Embedded(&files));
+    let largest = LARGEST_BLOCK.load(Ordering::Relaxed);
+    assert!(largest <= LARGEST_ALLOWED, "a block of {largest} bytes");
 }
 
 proptest! {
