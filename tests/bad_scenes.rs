@@ -1,8 +1,10 @@
 //! Scenes and assets that are wrong: each is refused with a sentence that names file, line,
 //! column, key and what would be right, and none makes the program panic or take much memory.
 
+use std::alloc::{GlobalAlloc, Layout, System};
 use std::fs;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use proptest::prelude::*;
 use sward::scene::assets::{Embedded, read_height_map, read_mesh};
@@ -101,6 +103,29 @@ fn numbers_out_of_range() {
 }
 
 #[test]
+fn the_limits_themselves_are_allowed() {
+    for source in [
+        "(duration_s: 172800)",
+        "(solver: (substep_s: 0.06666666666666667, segments: 16, cube_resolution: 256, skin_m: 0.05))",
+        "(solver: (substep_s: 0.0001, recovery_s: 60, segments: 1, cube_resolution: 8, rounds: (1, 1)))",
+        "(grass: (density_per_m2: 10000, species: []))",
+        "(grass: (density_per_m2: 0, species: [(height_m: (0.001, 10), lean_deg: (0, 90))]))",
+        "(terrain: (ground: Flat(size_m: (0.1, 0.1), spacing_m: 0.5)))",
+        body!("shape: Ball(radius_m: 0.001), restitution: 1, mass: Density(50000)"),
+        body!("shape: Box(size_m: (100, 0.001, 100)), position_m: (500000, -500000, 0)"),
+        body!(
+            "shape: Compound(parts: [(shape: ConvexHull(points_m: [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]))])"
+        ),
+        body!("shape: Vehicle(chassis_m: (1, 1, 2), wheel_radius_m: 0.5, wheel_width_m: 0.2)"),
+        "(expect: [AllRest(by_s: 4), Lean(at_s: 0, near_m: (-8, 8), within_m: 1, at_most_deg: 0)])",
+    ] {
+        if let Err(error) = parse_scene("limit", source, &[]) {
+            panic!("{source}\n{error}");
+        }
+    }
+}
+
+#[test]
 fn bodies_that_cannot_be() {
     check! {
         body!("shape: Ball(radius_m: -1)") => "2:35" "bodies[0].shape.radius_m": "is -1", "0.001 to 100 m";
@@ -145,10 +170,10 @@ fn scripts_cameras_and_expectations() {
 #[test]
 fn counts_over_budget() {
     check! {
-        "(terrain: (ground: Flat(size_m: (200000, 200000))))" => "1:20" "terrain.ground": "40000400001 height samples", "67108864";
+        "(terrain: (ground: Flat(size_m: (200000, 200000))))" => "1:20" "terrain.ground": "40000400001 height samples", "16777216";
         "(grass: (density_per_m2: 10000), solver: (tile_m: 32, seeding_cell_m: 8),\n terrain: (ground: Flat(size_m: (64, 64), spacing_m: 8)))" => "1:26" "grass.density_per_m2": "10240000 plants in a tile", "65536";
         "(solver: (tile_m: 8))" => "1:19" "solver.tile_m": "is 8 m", "0.5 m", "write 2 m";
-        "(terrain: (ground: Flat(size_m: (5000, 5000))))" => "1:20" "terrain.ground": "25000000 tiles", "16777216";
+        "(terrain: (ground: Flat(size_m: (5000, 5000), spacing_m: 2)))" => "1:20" "terrain.ground": "25000000 tiles", "16777216";
     }
     let many = "(shape: Ball(radius_m: 1), name: \"b\"),".repeat(4097);
     let text = parse_scene("many", &format!("(bodies: [{many}])"), &[]).expect_err("too many");
@@ -307,11 +332,38 @@ fn height_map() -> &'static [u8] {
 const EMPTY_GLB: &[u8] =
     b"glTF\x02\0\0\0\x30\0\0\0\x1c\0\0\0JSON{\"asset\":{\"version\":\"2.0\"}} ";
 
+/// The system's allocator, which also remembers the largest block ever asked for.
+struct Watched;
+
+static LARGEST_BLOCK: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call goes to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Watched {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        LARGEST_BLOCK.fetch_max(layout.size(), Ordering::Relaxed);
+        // SAFETY: the caller's promise about `layout` is passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise about `block` and `layout` is passed on.
+        unsafe { System.dealloc(block, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Watched = Watched;
+
+/// Files below are at most 64 KiB, which a PNG may unpack 1032-fold; nothing else may grow so.
+const LARGEST_ALLOWED: usize = (1 << 16) * 1032 + (1 << 20);
+
 fn never_panics(name: &str, bytes: &[u8]) {
     let files = [(name, bytes)];
-    // Errors are what most of these bytes deserve; reaching the next line is the test.
+    // Errors are what most of these bytes deserve; coming back is the test.
     let _ = read_mesh(name, &Embedded(&files));
     let _ = read_height_map(name, &Embedded(&files));
+    let largest = LARGEST_BLOCK.load(Ordering::Relaxed);
+    assert!(largest <= LARGEST_ALLOWED, "a block of {largest} bytes");
 }
 
 proptest! {

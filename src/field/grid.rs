@@ -12,7 +12,7 @@ use crate::terrain::HeightGrid;
 /// Cells along the side of an anchor square.
 pub const ANCHOR_CELLS: u32 = 4;
 /// Most plants one tile may hold: a slab's index and a drawing's instance count stay small.
-pub const MAX_PLANTS_PER_TILE: u64 = 65_536;
+pub const MAX_PLANTS_PER_TILE: u64 = crate::scene::limits::PLANTS_PER_TILE;
 /// Most halvings of the sample spacing.
 const MAX_HALVINGS: u32 = 12;
 

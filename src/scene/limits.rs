@@ -61,8 +61,8 @@ pub const HEIGHT: Range = range(0.001, 20_000.0, "m");
 pub const AMPLITUDE: Range = range(0.0, 10_000.0, "m");
 pub const WAVELENGTH: Range = range(0.1, 1e6, "m");
 pub const OCTAVES: Range = range(1.0, 12.0, "");
-/// Height samples: 256 MiB of them as 32-bit floats.
-pub const HEIGHT_SAMPLES: u64 = 64 << 20;
+/// Height samples: 64 MiB of them as 32-bit floats.
+pub const HEIGHT_SAMPLES: u64 = 1 << 24;
 /// Samples along one side of a height map.
 pub const HEIGHT_MAP_SIDE: u32 = 16_384;
 /// Tiles of a field.

@@ -28,6 +28,19 @@ pub struct LoadedScene {
     pub assets: Assets,
 }
 
+impl LoadedScene {
+    /// An error about a key of this scene that shows only later, such as a mesh that cannot be
+    /// split into convex parts; it points at the key in the text.
+    pub fn error_at(&self, key: &str, what: String) -> SceneError {
+        let file = match &self.path {
+            Some(path) => path.display().to_string(),
+            None => self.name.clone(),
+        };
+        let position = Positions::scan(&self.source).of_key(key);
+        SceneError::new(&file, position, key, Problem::Value(what))
+    }
+}
+
 /// Reads a scene file. Assets are looked up in the file's folder, then in `asset_dirs` in order.
 ///
 /// # Errors
@@ -173,6 +186,17 @@ mod tests {
         assert_eq!(loaded.name, "least");
         let named = parse_scene("named", "Scene(duration_s: 2)", &[]).expect("the name is allowed");
         assert_eq!(named.scene.duration_s, 2.0);
+    }
+
+    #[test]
+    fn later_errors_point_into_the_text() {
+        let source = "(\n  solver: (tile_m: 2),\n)";
+        let loaded = parse_scene("late", source, &[]).expect("valid");
+        let error = loaded.error_at("solver.tile_m", "is too large here".to_owned());
+        assert_eq!(
+            error.to_string(),
+            "late:2:20: solver.tile_m: is too large here"
+        );
     }
 
     #[test]

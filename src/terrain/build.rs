@@ -9,7 +9,7 @@ use super::HeightGrid;
 use super::noise::octaves;
 
 /// Most height samples of a ground: 64 MiB of them.
-pub const MOST_SAMPLES: u64 = 1 << 24;
+pub const MOST_SAMPLES: u64 = crate::scene::limits::HEIGHT_SAMPLES;
 /// Octaves beyond this many are finer than f32 heights can hold.
 const MOST_OCTAVES: u32 = 24;
 

@@ -4,6 +4,7 @@
 //! too short, follows links out of the folder, and lets nodes be their own children. So lengths,
 //! counts and the tree of nodes are checked here, and buffers are found by `gltf_buffers`.
 
+use std::borrow::Cow;
 use std::collections::HashSet;
 
 use gltf::json::Root;
@@ -48,10 +49,10 @@ pub(super) fn read(
     Ok(surface.mesh)
 }
 
-fn parse<'a>(
-    file: &str,
-    bytes: &'a [u8],
-) -> Result<(Document, Option<std::borrow::Cow<'a, [u8]>>), AssetError> {
+/// A binary file's chunk of bytes beside its JSON.
+type BinaryChunk<'a> = Option<Cow<'a, [u8]>>;
+
+fn parse<'a>(file: &str, bytes: &'a [u8]) -> Result<(Document, BinaryChunk<'a>), AssetError> {
     let invalid = |e: String| damaged(file, format!("it is no valid glTF: {e}"));
     let (text, binary) = if bytes.starts_with(b"glTF") {
         let said = bytes.get(8..HEADER_BYTES).and_then(|b| b.try_into().ok());

@@ -11,6 +11,9 @@ use crate::scene::limits::{HEIGHT_MAP_SIDE, HEIGHT_SAMPLES};
 /// Bytes the PNG reader may take for itself beside the picture: a few rows and the metadata.
 const READER_BYTES: usize = 16 << 20;
 
+/// Most bytes one packed byte can become: DEFLATE repeats at most 258 bytes for two bits.
+const MOST_UNPACKED: u64 = 1032;
+
 /// Reads a height map; its size is checked before it is unpacked.
 ///
 /// # Errors
@@ -42,6 +45,12 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<HeightMap, AssetError> {
         });
     }
     check_size(file, columns, rows)?;
+    if 2 * u64::from(columns) * u64::from(rows) > MOST_UNPACKED * bytes.len() as u64 {
+        let has = bytes.len();
+        return Err(damaged(format!(
+            "its {has} bytes cannot hold {columns} by {rows} samples"
+        )));
+    }
     let unpack = |e| damaged(format!("it cannot be unpacked: {e}"));
     let mut reader = decoder.read_info().map_err(unpack)?;
     let mut packed = vec![0; columns as usize * rows as usize * 2];
@@ -102,6 +111,19 @@ mod tests {
         bytes
     }
 
+    /// The checksum of a PNG chunk (ISO 3309), bit by bit.
+    fn crc32(bytes: &[u8]) -> u32 {
+        !bytes.iter().fold(!0, |crc, &byte| {
+            (0..8).fold(crc ^ u32::from(byte), |c, _| {
+                if c & 1 == 1 {
+                    0xEDB8_8320 ^ (c >> 1)
+                } else {
+                    c >> 1
+                }
+            })
+        })
+    }
+
     #[test]
     fn samples_are_big_endian_rows() {
         let data = [0, 1, 1, 0, 255, 255, 0, 0, 18, 52, 0, 9];
@@ -132,9 +154,18 @@ mod tests {
 
     #[test]
     fn a_huge_header_is_refused_before_unpacking() {
+        let mut lies = png(ColorType::Grayscale, BitDepth::Sixteen, [2, 2], &[7; 8]);
+        // The header chunk: 8 bytes of signature, 8 of chunk head, then width and height.
+        lies[16..24].copy_from_slice(&[0, 0, 0x10, 0, 0, 0, 0x10, 0]);
+        let crc = crc32(&lies[12..29]);
+        lies[29..33].copy_from_slice(&crc.to_be_bytes());
+        let text = read("h.png", &lies)
+            .expect_err("no such picture")
+            .to_string();
+        assert!(text.contains("cannot hold 4096 by 4096"), "{text}");
         assert!(check_size("h.png", 16_385, 2).is_err());
         assert!(check_size("h.png", 16_384, 16_384).is_err());
         assert!(check_size("h.png", 1, 100).is_err());
-        assert!(check_size("h.png", 8192, 8192).is_ok());
+        assert!(check_size("h.png", 4096, 4096).is_ok());
     }
 }

@@ -1,6 +1,6 @@
 //! Expectations: in time, over a place that has grass, with a limit that can be missed.
 
-use super::check::{Check, Key, Number, at_most, within, within_each};
+use super::check::{Check, Key, at_most, within, within_each};
 use super::script::{in_the_run, known};
 use crate::scene::budget::FieldSize;
 use crate::scene::limits::Range;
@@ -136,17 +136,13 @@ pub(super) fn on_the_ground(key: &Key, scene: &Scene, field: &FieldSize) -> Chec
         else {
             continue;
         };
-        for axis in 0..2 {
-            let half = 0.5 * field.size_m[axis];
+        for (axis, (&at, size_m)) in near_m.iter().zip(field.size_m).enumerate() {
             let ground = Range {
-                min: -half,
-                max: half,
+                min: -0.5 * size_m,
+                max: 0.5 * size_m,
                 unit: "m, where the ground ends",
             };
-            if !near_m[axis].is_within(&ground) {
-                let key = key.nth(i).field("near_m").nth(axis);
-                return within(&key, near_m[axis], &ground);
-            }
+            within(&key.nth(i).field("near_m").nth(axis), at, &ground)?;
         }
     }
     Ok(())
