@@ -14,6 +14,9 @@ use super::error::ShapeError;
 use super::frame::turn_of_degrees;
 use super::shape::{ConvexPart, DrawMesh, RigidShape, Solid};
 
+/// Most convex parts of a mesh: more than 128 cost the grass more than they show.
+const MOST_PARTS: u32 = 128;
+
 /// Meshes by the path that a scene gives.
 pub(super) type Meshes = BTreeMap<String, TriangleMesh>;
 
@@ -141,10 +144,11 @@ fn mesh_shape(
     max_parts: u32,
 ) -> Result<RigidShape, ShapeError> {
     let file = || file.to_owned();
-    if max_parts == 0 {
-        return Err(ShapeError::NoParts {
+    if !(1..=MOST_PARTS).contains(&max_parts) {
+        return Err(ShapeError::PartCount {
             file: file(),
             max_parts,
+            most: MOST_PARTS,
         });
     }
     let vertices = mesh.positions.len();
