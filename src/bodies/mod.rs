@@ -17,6 +17,7 @@ mod link;
 mod path;
 pub mod shape;
 mod solids;
+mod vehicle;
 mod world;
 
 pub use error::{BodyError, ShapeError};
@@ -27,3 +28,5 @@ pub use world::{Bodies, BodyInfo, RayHit};
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod vehicle_tests;
