@@ -27,6 +27,8 @@ pub use shape::{ConvexPart, DrawMesh, RigidShape, Solid};
 pub use world::{Bodies, BodyInfo, RayHit};
 
 #[cfg(test)]
+mod contact_tests;
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod vehicle_tests;
