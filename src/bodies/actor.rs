@@ -134,8 +134,9 @@ pub(super) fn rigid_body(body: &Body, control: &Control, at: Pose<f64>) -> Rigid
     builder.build()
 }
 
-/// The collider of one of the library's shapes, a vehicle's chassis for one, with the body's mass, friction and restitution.
-/// The ground has no restitution of its own, so the larger of two bodies' counts.
+/// The collider of one of the library's shapes, a vehicle's chassis for one, with the body's mass,
+/// friction and restitution. The ground has no restitution of its own, so the larger of two
+/// bodies' counts.
 ///
 /// # Errors
 /// If the mass is not more than 0 and finite, in rapier's f32.
