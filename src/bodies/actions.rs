@@ -6,6 +6,7 @@ use crate::scene::{Action, Body, Shape};
 use super::actor::{Actor, Control, Piece, collider, first_pose, radians, rigid_body};
 use super::error::BodyError;
 use super::frame::{pose_from_rapier, to_rapier};
+use super::vehicle::{Build, Controls, Vehicle};
 use super::world::Bodies;
 
 impl Bodies {
@@ -34,10 +35,18 @@ impl Bodies {
                 body,
                 impulse_kg_m_per_s,
             } => self.push(body, *impulse_kg_m_per_s)?,
-            Action::Drive { body, .. } => {
-                if self.find(body)?.is_some() {
-                    return Err(BodyError::NotAVehicle { name: body.clone() });
-                }
+            Action::Drive {
+                body,
+                engine_n,
+                steer_deg,
+                brake_n,
+            } => {
+                let controls = Controls {
+                    engine_n: *engine_n,
+                    steer_rad: steer_deg.to_radians(),
+                    brake_n: *brake_n,
+                };
+                self.drive(body, controls)?;
             }
             Action::SetWind(_) => return Ok(()),
         }
@@ -62,9 +71,9 @@ impl Bodies {
         Ok(named.name)
     }
 
-    /// Makes the shapes of a body, so that spawning it later takes no time.
-    pub(super) fn prepare_shape(&mut self, body: &Body) -> Result<Vec<u32>, BodyError> {
-        let index = |shape: &Shape| {
+    /// Makes the shapes of a body's pieces, so that spawning it later takes no time.
+    pub(super) fn prepare_shapes(&mut self, body: &Body) -> Result<Vec<u32>, BodyError> {
+        let mut index = |shape: &Shape| {
             self.library
                 .index_of(shape)
                 .map_err(|source| BodyError::Shape {
@@ -72,7 +81,10 @@ impl Bodies {
                     source,
                 })
         };
-        [&body.shape].into_iter().map(index).collect()
+        match Build::of(&body.shape) {
+            Some(build) => build.pieces().iter().map(index).collect(),
+            None => Ok(vec![index(&body.shape)?]),
+        }
     }
 
     pub(super) fn insert(&mut self, body: &Body, now_s: f64) -> Result<(), BodyError> {
@@ -82,7 +94,13 @@ impl Bodies {
             });
         }
         let control = Control::of(body)?;
-        let shapes = self.prepare_shape(body)?;
+        let shapes = self.prepare_shapes(body)?;
+        let build = Build::of(&body.shape);
+        if build.is_some() && control.held().is_some() {
+            return Err(BodyError::HeldVehicle {
+                name: body.name.clone(),
+            });
+        }
         let collider = collider(body, shapes[0], &self.library)?;
         let pose = first_pose(body, &control, &self.ground, now_s);
         let rigid = rigid_body(body, &control, pose);
@@ -101,10 +119,13 @@ impl Bodies {
             from: pose,
             to: pose,
         };
+        // As rapier combines two colliders' friction.
+        let grip = 0.5 * (body.friction + self.ground_friction);
         let actor = Actor {
             id,
             handle,
             control,
+            vehicle: build.map(|build| Vehicle::new(handle, &build, grip)),
             pieces: shapes.iter().map(piece).collect(),
             grass_collider: body.collider,
             rgb: body.rgb,
@@ -160,9 +181,27 @@ impl Bodies {
         body.set_angvel(rapier3d::math::Vector::ZERO, true);
         let pose = pose_from_rapier(body.position());
         if let Some(actor) = self.actors.get_mut(name) {
-            for piece in &mut actor.pieces {
+            let poses = actor.piece_poses(pose);
+            for (piece, pose) in actor.pieces.iter_mut().zip(poses) {
                 piece.jump(pose);
             }
+        }
+        Ok(())
+    }
+
+    fn drive(&mut self, name: &str, controls: Controls) -> Result<(), BodyError> {
+        let Some(actor) = self.find(name)? else {
+            return Ok(());
+        };
+        let Some(vehicle) = &mut actor.vehicle else {
+            return Err(BodyError::NotAVehicle { name: name.into() });
+        };
+        vehicle.drive(controls);
+        let handle = actor.handle;
+        if !controls.are_finite() {
+            self.quarantine(name);
+        } else if let Some(body) = self.physics.bodies.get_mut(handle) {
+            body.wake_up(true);
         }
         Ok(())
     }

@@ -12,6 +12,7 @@ use super::error::BodyError;
 use super::frame::{pose_to_rapier, to_rapier, turn_of_degrees};
 use super::library::ShapeLibrary;
 use super::path::Path;
+use super::vehicle::{Build, Vehicle};
 
 /// A body that is in the world.
 pub(super) struct Actor {
@@ -19,6 +20,7 @@ pub(super) struct Actor {
     pub id: u32,
     pub handle: RigidBodyHandle,
     pub control: Control,
+    pub vehicle: Option<Vehicle>,
     /// At least one; a vehicle's chassis is the first.
     pub pieces: Vec<Piece>,
     pub grass_collider: GrassCollider,
@@ -51,6 +53,14 @@ impl Piece {
     pub fn jump(&mut self, to: Pose<f64>) {
         self.from = to;
         self.to = to;
+    }
+}
+
+impl Actor {
+    /// `world_from_body` of every piece, for a pose of the body.
+    pub fn piece_poses(&self, body: Pose<f64>) -> Vec<Pose<f64>> {
+        let wheels = self.vehicle.iter().flat_map(|v| v.wheel_poses(body));
+        std::iter::once(body).chain(wheels).collect()
     }
 }
 
@@ -124,8 +134,9 @@ pub(super) fn rigid_body(body: &Body, control: &Control, at: Pose<f64>) -> Rigid
     builder.build()
 }
 
-/// The collider of one of the library's shapes with the body's mass, friction and restitution.
-/// The ground has no restitution of its own, so the larger of two bodies' counts.
+/// The collider of one of the library's shapes, a vehicle's chassis for one, with the body's mass,
+/// friction and restitution. The ground has no restitution of its own, so the larger of two
+/// bodies' counts.
 ///
 /// # Errors
 /// If the mass is not more than 0 and finite, in rapier's f32.
@@ -135,9 +146,16 @@ pub(super) fn collider(
     library: &ShapeLibrary,
 ) -> Result<Collider, BodyError> {
     let builder = ColliderBuilder::new(library.collider(shape));
-    let builder = match body.mass {
-        Mass::Kilograms(kilograms) => builder.mass(kilograms),
-        Mass::Density(density) => builder.density(density),
+    let builder = match (Build::of(&body.shape), body.mass) {
+        (Some(build), Mass::Kilograms(kilograms)) => {
+            builder.mass_properties(build.mass_properties(kilograms))
+        }
+        (Some(build), Mass::Density(density)) => {
+            let kilograms = density * build.chassis_volume_m3();
+            builder.mass_properties(build.mass_properties(kilograms))
+        }
+        (None, Mass::Kilograms(kilograms)) => builder.mass(kilograms),
+        (None, Mass::Density(density)) => builder.density(density),
     };
     let collider = builder
         .friction(body.friction)

@@ -48,8 +48,12 @@ pub enum ShapeError {
          that enclose one, and a scale more than 0"
     )]
     FlatMesh { file: String, scale: f32 },
-    #[error("mesh `{file}` may be split into {max_parts} parts; it takes at least 1")]
-    NoParts { file: String, max_parts: u32 },
+    #[error("mesh `{file}` may be split into {max_parts} parts; give 1 to {most}")]
+    PartCount {
+        file: String,
+        max_parts: u32,
+        most: u32,
+    },
     #[error("mesh `{file}`: triangle {triangle} names vertex {vertex}, but there are {vertices}")]
     MeshIndex {
         file: String,

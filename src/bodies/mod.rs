@@ -17,6 +17,7 @@ mod link;
 mod path;
 pub mod shape;
 mod solids;
+mod vehicle;
 mod world;
 
 pub use error::{BodyError, ShapeError};
@@ -26,4 +27,8 @@ pub use shape::{ConvexPart, DrawMesh, RigidShape, Solid};
 pub use world::{Bodies, BodyInfo, RayHit};
 
 #[cfg(test)]
+mod contact_tests;
+#[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod vehicle_tests;

@@ -14,6 +14,9 @@ use super::error::ShapeError;
 use super::frame::turn_of_degrees;
 use super::shape::{ConvexPart, DrawMesh, RigidShape, Solid};
 
+/// Most convex parts of a mesh: more than 128 cost the grass more than they show.
+const MOST_PARTS: u32 = 128;
+
 /// Meshes by the path that a scene gives.
 pub(super) type Meshes = BTreeMap<String, TriangleMesh>;
 
@@ -141,10 +144,11 @@ fn mesh_shape(
     max_parts: u32,
 ) -> Result<RigidShape, ShapeError> {
     let file = || file.to_owned();
-    if max_parts == 0 {
-        return Err(ShapeError::NoParts {
+    if !(1..=MOST_PARTS).contains(&max_parts) {
+        return Err(ShapeError::PartCount {
             file: file(),
             max_parts,
+            most: MOST_PARTS,
         });
     }
     let vertices = mesh.positions.len();
@@ -267,5 +271,169 @@ fn farthest(part: &ConvexPart) -> f64 {
             .iter()
             .map(|&v| part.pose.point(Vec3::of(v)).length())
             .fold(0.0, f64::max),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Part;
+
+    fn made(shape: &Shape) -> RigidShape {
+        rigid_shape(shape, &Meshes::new()).expect("a sound shape")
+    }
+
+    /// One part of every kind, turned and moved.
+    fn mixed() -> Shape {
+        let part = |shape, x: f32| Part {
+            shape,
+            position_m: [x, 0.2, -0.1],
+            rotation_deg: [20.0 * x, 35.0, -50.0],
+        };
+        Shape::Compound {
+            parts: vec![
+                part(Shape::Ball { radius_m: 0.3 }, -2.0),
+                part(
+                    Shape::Box {
+                        size_m: [0.2, 0.5, 0.9],
+                    },
+                    -1.0,
+                ),
+                part(
+                    Shape::Capsule {
+                        radius_m: 0.1,
+                        length_m: 0.6,
+                    },
+                    0.0,
+                ),
+                part(
+                    Shape::Cylinder {
+                        radius_m: 0.3,
+                        height_m: 0.2,
+                    },
+                    1.0,
+                ),
+                part(
+                    Shape::ConvexHull {
+                        points_m: vec![
+                            [0.0, 0.0, 0.0],
+                            [0.5, 0.0, 0.0],
+                            [0.0, 0.5, 0.0],
+                            [0.0, 0.0, 0.5],
+                        ],
+                    },
+                    2.0,
+                ),
+            ],
+        }
+    }
+
+    #[test]
+    fn bounds_hold_what_is_drawn_and_touch_it() {
+        let shape = made(&mixed());
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        let mut farthest: f64 = 0.0;
+        for p in &shape.mesh.positions {
+            let p = p.map(f64::from);
+            farthest = farthest.max(Vec3::<f64>::of(p).length());
+            for axis in 0..3 {
+                low[axis] = low[axis].min(p[axis]);
+                high[axis] = high[axis].max(p[axis]);
+            }
+        }
+        // Drawn round surfaces lie inside the true ones by up to 0.5% of a radius of 0.3 m; as far
+        // again where the outermost point falls between two meridians.
+        let slack = 0.003;
+        for axis in 0..3 {
+            let least = shape.parts.iter().map(|p| p.bounds_m[0][axis]);
+            let most = shape.parts.iter().map(|p| p.bounds_m[1][axis]);
+            let (least, most) = (
+                least.fold(f64::INFINITY, f64::min),
+                most.fold(f64::NEG_INFINITY, f64::max),
+            );
+            assert!((-1e-6..slack).contains(&(low[axis] - least)), "{axis}");
+            assert!((-1e-6..slack).contains(&(most - high[axis])), "{axis}");
+        }
+        assert!(shape.bounding_radius_m >= farthest - 1e-6);
+        assert!(shape.bounding_radius_m < farthest + 0.1);
+    }
+
+    #[test]
+    fn half_the_smallest_extent_is_the_thickness() {
+        let thickness: Vec<f64> = made(&mixed())
+            .parts
+            .iter()
+            .map(|p| p.half_thickness_m)
+            .collect();
+        // The corner of a cube is thinnest across its slanted face: 0.5/√3 from the corner.
+        let corner = 0.25 / 3.0_f64.sqrt();
+        for (got, want) in thickness.iter().zip([0.3, 0.1, 0.1, 0.1, corner]) {
+            assert!((got - want).abs() < 1e-6, "{got} {want}");
+        }
+        assert!((made(&mixed()).half_thickness_m - 0.1).abs() < 1e-6);
+    }
+
+    #[test]
+    fn shapes_without_an_inside_are_refused() {
+        let refuse = |shape: Shape| rigid_shape(&shape, &Meshes::new()).err();
+        assert_eq!(
+            refuse(Shape::Compound { parts: vec![] }),
+            Some(ShapeError::EmptyCompound)
+        );
+        let nested = Shape::Compound {
+            parts: vec![Part {
+                shape: mixed(),
+                position_m: [0.0; 3],
+                rotation_deg: [0.0; 3],
+            }],
+        };
+        assert_eq!(
+            refuse(nested),
+            Some(ShapeError::Nested { inner: "compound" })
+        );
+        for radius_m in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            assert!(refuse(Shape::Ball { radius_m }).is_some());
+        }
+    }
+
+    #[test]
+    fn a_mesh_keeps_its_origin_and_takes_its_scale() {
+        let cube = DrawMesh::cuboid([0.5; 3]);
+        let mesh = TriangleMesh {
+            positions: cube
+                .positions
+                .iter()
+                .map(|p| [p[0] + 2.0, p[1], p[2]])
+                .collect(),
+            triangles: cube
+                .indices
+                .chunks_exact(3)
+                .map(|t| [t[0], t[1], t[2]])
+                .collect(),
+        };
+        let meshes = Meshes::from([("cube.obj".to_owned(), mesh)]);
+        let of = |scale, max_parts| {
+            let file = "cube.obj".to_owned();
+            let shape = Shape::Mesh {
+                file,
+                scale,
+                max_parts,
+            };
+            rigid_shape(&shape, &meshes)
+        };
+        let shape = of(0.1, 8).expect("a cube");
+        assert_eq!(shape.parts.len(), 1);
+        let [low, high] = shape.parts[0].bounds_m;
+        for (got, want) in low
+            .iter()
+            .chain(&high)
+            .zip([0.15, -0.05, -0.05, 0.25, 0.05, 0.05])
+        {
+            assert!((got - want).abs() < 1e-6, "{got} {want}");
+        }
+        assert!((shape.half_thickness_m - 0.05).abs() < 1e-6);
+        assert!(matches!(of(0.0, 8), Err(ShapeError::FlatMesh { .. })));
+        assert!(matches!(of(1.0, 0), Err(ShapeError::PartCount { .. })));
     }
 }

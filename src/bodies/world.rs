@@ -32,6 +32,7 @@ const ALLOWED_ERROR_M: f32 = 0.0005;
 pub struct Bodies {
     pub(super) physics: PhysicsWorld,
     pub(super) ground: HeightGrid,
+    pub(super) ground_friction: f32,
     pub(super) library: ShapeLibrary,
     pub(super) actors: BTreeMap<String, Actor>,
     /// Rank of each name that the scene knows, then names dropped later.
@@ -79,6 +80,7 @@ impl Bodies {
         let mut bodies = Self {
             physics: physics_world(),
             ground: ground.clone(),
+            ground_friction: scene.terrain.friction,
             library: ShapeLibrary::new(assets.meshes.clone()),
             actors: BTreeMap::new(),
             ids: ids(scene),
@@ -94,7 +96,7 @@ impl Bodies {
         }
         for event in &scene.script {
             if let Action::Spawn(body) = &event.action {
-                bodies.prepare_shape(body)?;
+                bodies.prepare_shapes(body)?;
             }
         }
         bodies.refresh();
@@ -112,6 +114,11 @@ impl Bodies {
         // Rapier's own ratio of the shortest piece of a step to the whole.
         self.physics.integration_parameters.min_ccd_dt = dt_s as f32 / 100.0;
         self.aim_at_paths(start_s, start_s + dt_s);
+        for actor in self.actors.values_mut() {
+            if let Some(vehicle) = &mut actor.vehicle {
+                vehicle.push(&mut self.physics, dt_s as f32);
+            }
+        }
         self.physics.step();
         self.expel_broken();
         self.read_poses(start_s, start_s + dt_s);
@@ -151,7 +158,7 @@ impl Bodies {
                 },
                 awake: !body.is_sleeping() && !body.is_fixed(),
                 shape: piece.shape,
-                is_vehicle: false,
+                is_vehicle: actor.vehicle.is_some(),
             })
         })
     }
@@ -196,7 +203,8 @@ impl Bodies {
                 hash.floats(&[q.x, q.y, q.z, q.w]);
             }
             for piece in &actor.pieces {
-                for c in piece.to.turn.to_array() {
+                let place = piece.to.place.to_f64();
+                for c in piece.to.turn.to_array().iter().chain(&place) {
                     hash.bytes(&c.to_bits().to_le_bytes());
                 }
             }
@@ -210,6 +218,17 @@ impl Bodies {
         self.physics.integration_parameters.dt = 0.0;
         self.physics.step();
         self.expel_broken();
+        for actor in self.actors.values_mut() {
+            let Some(vehicle) = &mut actor.vehicle else {
+                continue;
+            };
+            if vehicle.set_down(&mut self.physics) {
+                let poses = actor.piece_poses(actor.pieces[0].to);
+                for (piece, pose) in actor.pieces.iter_mut().zip(poses) {
+                    piece.jump(pose);
+                }
+            }
+        }
         self.list_links();
     }
 
@@ -283,7 +302,8 @@ impl Bodies {
                 Control::Path(path) => path.jumps(start_s, end_s),
                 Control::Free | Control::Fixed => false,
             };
-            for piece in &mut actor.pieces {
+            let poses = actor.piece_poses(pose);
+            for (piece, pose) in actor.pieces.iter_mut().zip(poses) {
                 if jumps {
                     piece.jump(pose);
                 } else {

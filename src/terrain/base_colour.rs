@@ -189,7 +189,7 @@ mod tests {
         let large = map(404, 345, 5.0);
         assert_eq!([large.columns, large.rows], [1024, 875]);
         let reach = large.texel_m * f64::from(large.rows);
-        assert!(reach >= 344.0 * 5.0 && reach < 345.0 * 5.0);
+        assert!((344.0 * 5.0..345.0 * 5.0).contains(&reach));
     }
 
     #[test]
