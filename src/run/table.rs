@@ -64,19 +64,11 @@ fn write_expectation(expectation: &Expectation, out: &mut impl Write) -> io::Res
         write!(out, "at {at} s: ")?;
     }
     write!(out, "{}", expectation.what)?;
-    let unit = expectation.unit;
-    let value = |v: f64| {
-        if unit.is_empty() {
-            number(v)
-        } else {
-            format!("{} {unit}", number(v))
-        }
-    };
     if let Some(limit) = expectation.limit {
-        write!(out, " [{}]", value(limit))?;
+        write!(out, " [{}]", with_unit(limit, expectation.unit))?;
     }
     if let Some(measured) = expectation.measured {
-        write!(out, ": {}", value(measured))?;
+        write!(out, ": {}", with_unit(measured, expectation.unit))?;
     }
     if let Some(reason) = &expectation.reason {
         write!(out, " ({reason})")?;
@@ -169,6 +161,15 @@ fn write_list(
     writeln!(out, "  {title:<11}  {}", items.join(", "))
 }
 
+/// A measured value; lengths below a decimetre in millimetres.
+fn with_unit(value: f64, unit: &str) -> String {
+    match unit {
+        "" => number(value),
+        "m" if value != 0.0 && value.abs() < 0.1 => format!("{} mm", number(value * 1e3)),
+        unit => format!("{} {unit}", number(value)),
+    }
+}
+
 /// A number with the digits that matter: whole, or four significant ones.
 fn number(value: f64) -> String {
     let size = value.abs();
@@ -210,12 +211,20 @@ mod tests {
     }
 
     #[test]
+    fn short_lengths_are_in_millimetres() {
+        assert_eq!(with_unit(0.0, "m"), "0 m");
+        assert_eq!(with_unit(0.00471875, "m"), "4.719 mm");
+        assert_eq!(with_unit(0.5, "m"), "0.5000 m");
+        assert_eq!(with_unit(40.0, "°"), "40 °");
+    }
+
+    #[test]
     fn numbers_keep_four_digits() {
         for (value, text) in [
             (0.0, "0"),
             (40.0, "40"),
             (12.25, "12.25"),
-            (0.012345, "0.01234"),
+            (0.0123, "0.01230"),
             (1.5e-5, "1.500e-5"),
             (123456.7, "1.235e5"),
         ] {
