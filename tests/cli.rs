@@ -145,3 +145,23 @@ fn every_machine_has_a_doctor() {
         "{text}"
     );
 }
+
+#[test]
+fn shipped_scenes_are_known_by_name() {
+    let output = sward(&["list"]);
+    assert_eq!(code(&output), 0);
+    let listed = String::from_utf8(output.stdout).expect("text");
+    assert!(
+        listed.lines().any(|line| line.starts_with("meadow ")),
+        "{listed}"
+    );
+    let trace = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("still.csv");
+    let trace = trace.display().to_string();
+    let output = sward(&[
+        "run", "still", "--engine", "cpu", "--hz", "15", "--trace", &trace,
+    ]);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("still: "));
+    let rows = std::fs::read_to_string(&trace).expect("the trace was written");
+    // Two seconds at 15 Hz and the head.
+    assert_eq!(rows.lines().count(), 31);
+}
