@@ -4,6 +4,8 @@ mod cli;
 mod commands;
 mod failure;
 
+use std::fmt::Display;
+use std::io::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
@@ -37,12 +39,17 @@ pub fn main() -> ExitCode {
         Ok(Ok(exit)) => exit.into(),
         Ok(Err(failure)) => {
             if !failure.is_closed_pipe() {
-                eprintln!("sward: {failure}");
+                complain(&failure);
             }
             failure.exit().into()
         }
         Err(_) => Exit::Internal.into(),
     }
+}
+
+/// Says on stderr what went wrong. Where stderr is closed the exit code has to do.
+fn complain(problem: &dyn Display) {
+    let _ = writeln!(io::stderr(), "sward: {problem}");
 }
 
 fn start_log(verbose: bool) {

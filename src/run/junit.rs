@@ -34,68 +34,65 @@ fn suite(xml: &mut String, scenario: &Scenario) {
     );
     run_case(xml, scenario, &name);
     for expectation in &scenario.expectations {
-        case(xml, expectation, &name);
+        expectation_case(xml, expectation, &name);
     }
     xml.push_str("  </testsuite>\n");
 }
 
 fn run_case(xml: &mut String, scenario: &Scenario, suite: &str) {
-    let head = format!("    <testcase classname=\"{suite}\" name=\"runs\"");
-    let message = match &scenario.error {
-        Some(error) => attribute(error),
+    let error = match &scenario.error {
+        Some(error) => Some(error.clone()),
         None if unfinite(scenario) => {
-            format!("{} values were not finite", scenario.metrics.nan_count)
+            let count = scenario.metrics.nan_count;
+            Some(format!("{count} plants with values that are not finite"))
         }
-        None => {
-            line(xml, format_args!("{head}/>"));
-            return;
-        }
+        None => None,
     };
-    line(xml, format_args!("{head}>"));
-    line(xml, format_args!("      <error message=\"{message}\"/>"));
-    line(xml, format_args!("    </testcase>"));
+    case(xml, suite, "runs", error.map(|text| ("error", text)));
 }
 
 fn unfinite(scenario: &Scenario) -> bool {
     scenario.metrics.nan_count > 0
 }
 
-fn case(xml: &mut String, expectation: &Expectation, suite: &str) {
-    let at = expectation
-        .at
-        .map_or(String::new(), |at| format!(" at {at} s"));
-    let name = attribute(&format!("{}{at}", expectation.what));
-    let head = format!("    <testcase classname=\"{suite}\" name=\"{name}\"");
-    let reason = expectation.reason.as_deref().unwrap_or_default();
-    match expectation.passed {
-        Some(true) => line(xml, format_args!("{head}/>")),
-        Some(false) => {
-            let message = attribute(&format!("{} {reason}", measured(expectation)));
-            line(xml, format_args!("{head}>"));
-            line(
-                xml,
-                format_args!("      <failure message=\"{}\"/>", message.trim()),
-            );
-            line(xml, format_args!("    </testcase>"));
-        }
-        None => {
-            line(xml, format_args!("{head}>"));
-            line(
-                xml,
-                format_args!("      <skipped message=\"{}\"/>", attribute(reason)),
-            );
-            line(xml, format_args!("    </testcase>"));
-        }
-    }
+fn expectation_case(xml: &mut String, expectation: &Expectation, suite: &str) {
+    let name = match expectation.at {
+        Some(at) => format!("{} at {at} s", expectation.what),
+        None => expectation.what.clone(),
+    };
+    let reason = expectation.reason.clone().unwrap_or_default();
+    let outcome = match expectation.passed {
+        Some(true) => None,
+        Some(false) => Some(("failure", format!("{} {reason}", measured(expectation)))),
+        None => Some(("skipped", reason)),
+    };
+    case(xml, suite, &name, outcome);
 }
 
 /// What was measured against its limit, in words.
 fn measured(expectation: &Expectation) -> String {
-    let value =
-        |v: Option<f64>| v.map_or("nothing".into(), |v| format!("{v} {}", expectation.unit));
-    let measured = value(expectation.measured);
-    let limit = value(expectation.limit);
-    format!("measured {}, limit {}", measured.trim(), limit.trim())
+    let value = |v: f64| format!("{v} {}", expectation.unit).trim_end().to_owned();
+    match (expectation.measured, expectation.limit) {
+        (Some(measured), Some(limit)) => {
+            format!("measured {}, limit {}", value(measured), value(limit))
+        }
+        (Some(measured), None) => format!("measured {}", value(measured)),
+        (None, _) => "not measured:".into(),
+    }
+}
+
+/// A test case; `outcome` is the tag and message of one that did not pass.
+fn case(xml: &mut String, suite: &str, name: &str, outcome: Option<(&str, String)>) {
+    let name = attribute(name);
+    let head = format!("    <testcase classname=\"{suite}\" name=\"{name}\"");
+    let Some((tag, message)) = outcome else {
+        line(xml, format_args!("{head}/>"));
+        return;
+    };
+    let message = attribute(message.trim());
+    line(xml, format_args!("{head}>"));
+    line(xml, format_args!("      <{tag} message=\"{message}\"/>"));
+    line(xml, format_args!("    </testcase>"));
 }
 
 fn line(xml: &mut String, text: std::fmt::Arguments<'_>) {

@@ -92,10 +92,13 @@ pub struct Metrics {
     pub max_offset_m: f64,
     /// Largest move of a touched plant's node in a frame in which no body moved.
     pub jitter_m_per_frame: Option<f64>,
-    /// Times after release at which a half, a tenth and a hundredth of a tip's offset were left.
+    /// Times after release at which the weight of a plant's offset had fallen to a half, a tenth
+    /// and a hundredth; null if no plant was followed so long.
     pub recovery_half_s: Option<f64>,
     pub recovery_tenth_s: Option<f64>,
     pub recovery_hundredth_s: Option<f64>,
+    /// The same of the distance of that plant's tip from its wind pose.
+    pub tip_recovery_s: [Option<f64>; 3],
     /// Overlap of the imprint with the reference engine's; null without a comparison.
     pub imprint_iou: Option<f64>,
     /// Plants that ended on another side of a body than the reference's; null without a comparison.
@@ -146,7 +149,7 @@ impl Scenario {
     /// Reports a scenario that ran.
     pub fn of(outcome: &Outcome) -> Self {
         let meadow = &outcome.meadow;
-        let colliders = meadow.colliders().into_iter();
+        let colliders = outcome.watch.colliders.iter();
         Self {
             name: outcome.name.clone(),
             passed: outcome.passed(),
@@ -162,8 +165,8 @@ impl Scenario {
                 .state_hash(meadow)
                 .map(|h| format!("{h:016x}")),
             colliders: colliders
-                .map(|(body, cube_parts, analytic_parts)| Collider {
-                    body,
+                .map(|(body, &(cube_parts, analytic_parts))| Collider {
+                    body: body.clone(),
                     cube_parts,
                     analytic_parts,
                 })
@@ -206,7 +209,7 @@ impl Expectation {
 impl Metrics {
     fn of(outcome: &Outcome) -> Self {
         let (watch, meadow) = (&outcome.watch, &outcome.meadow);
-        let [half, tenth, hundredth] = watch.recovery_s();
+        let [half, tenth, hundredth] = watch.release.weight_s();
         Self {
             max_penetration_m: watch.max_penetration_m(),
             p999_penetration_m: watch.p999_penetration_m(),
@@ -218,6 +221,7 @@ impl Metrics {
             recovery_half_s: half,
             recovery_tenth_s: tenth,
             recovery_hundredth_s: hundredth,
+            tip_recovery_s: watch.release.tip_s(),
             imprint_iou: None,
             side_flips: None,
             pinched_vertices: watch.pinched,
@@ -342,6 +346,7 @@ pub(super) mod tests {
             "state_bytes_peak",
             "tiles_active_peak",
             "tiles_total",
+            "tip_recovery_s",
         ];
         assert_eq!(metrics, want);
         assert_eq!(json["schema_version"], 1);

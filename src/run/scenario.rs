@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::scene::LoadedScene;
+use crate::sim::measure::Snapshot;
 use crate::sim::{Meadow, MeadowError};
 
 use super::engine::{Engine, EngineChoice};
@@ -55,6 +56,15 @@ impl Outcome {
     }
 }
 
+/// The end of a frame, for whoever watches a run.
+pub struct Frame<'a> {
+    /// Share of the run that is done, 0…1.
+    pub done: f64,
+    pub meadow: &'a Meadow,
+    /// This frame's measures alone.
+    pub snapshot: &'a Snapshot,
+}
+
 /// Why a scenario could not be run.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
@@ -64,7 +74,7 @@ pub enum RunError {
     Rate(f64),
 }
 
-/// Runs a scene to its end. `progress` hears the share of the run that is done.
+/// Runs a scene to its end. `each_frame` is called at the end of every frame.
 ///
 /// # Errors
 ///
@@ -73,7 +83,7 @@ pub fn run_scene(
     loaded: &LoadedScene,
     options: &RunOptions,
     engine: Engine,
-    mut progress: impl FnMut(f64),
+    mut each_frame: impl FnMut(&Frame<'_>),
 ) -> Result<Outcome, RunError> {
     if !(options.hz >= 1.0 && options.hz <= 10_000.0) {
         return Err(RunError::Rate(options.hz));
@@ -108,7 +118,11 @@ pub fn run_scene(
             }
         }
         watch.frame(&meadow, &mut engine);
-        progress((frame + 1) as f64 / frames as f64);
+        each_frame(&Frame {
+            done: (frame + 1) as f64 / frames as f64,
+            meadow: &meadow,
+            snapshot: &watch.last,
+        });
     }
     let wall_s = started.elapsed().as_secs_f64();
     let verdicts = judges

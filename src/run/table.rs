@@ -1,8 +1,12 @@
 //! The report as text for people.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use super::report::{Collider, Expectation, Metrics, Report, Scenario};
+
+/// Most bodies of a kind of collider that are named in a row.
+const BODIES_NAMED: usize = 8;
 
 /// Writes the whole report.
 ///
@@ -40,7 +44,9 @@ fn write_scenario(scenario: &Scenario, out: &mut impl Write) -> io::Result<()> {
         write_expectation(expectation, out)?;
     }
     write_metrics(&scenario.metrics, out)?;
-    write_list(out, "colliders", scenario.colliders.iter().map(collider))?;
+    for kind in colliders(&scenario.colliders) {
+        writeln!(out, "  collider     {kind}")?;
+    }
     let passes = scenario.pass_ms.iter();
     write_list(
         out,
@@ -64,19 +70,11 @@ fn write_expectation(expectation: &Expectation, out: &mut impl Write) -> io::Res
         write!(out, "at {at} s: ")?;
     }
     write!(out, "{}", expectation.what)?;
-    let unit = expectation.unit;
-    let value = |v: f64| {
-        if unit.is_empty() {
-            number(v)
-        } else {
-            format!("{} {unit}", number(v))
-        }
-    };
     if let Some(limit) = expectation.limit {
-        write!(out, " [{}]", value(limit))?;
+        write!(out, " [{}]", with_unit(limit, expectation.unit))?;
     }
     if let Some(measured) = expectation.measured {
-        write!(out, ": {}", value(measured))?;
+        write!(out, ": {}", with_unit(measured, expectation.unit))?;
     }
     if let Some(reason) = &expectation.reason {
         write!(out, " ({reason})")?;
@@ -105,9 +103,10 @@ fn write_metrics(metrics: &Metrics, out: &mut impl Write) -> io::Result<()> {
             .map_or(String::new(), |j| format!(", jitter {} a frame", mm(j)))
     )?;
     let seconds = |s: Option<f64>| s.map_or("-".into(), |s| format!("{s:.3} s"));
+    let [half, tenth, hundredth] = metrics.tip_recovery_s.map(seconds);
     writeln!(
         out,
-        "  recovery     half {}, tenth {}, hundredth {}",
+        "  recovery     half {}, tenth {}, hundredth {}; tip {half}, {tenth}, {hundredth}",
         seconds(metrics.recovery_half_s),
         seconds(metrics.recovery_tenth_s),
         seconds(metrics.recovery_hundredth_s)
@@ -138,23 +137,33 @@ fn write_metrics(metrics: &Metrics, out: &mut impl Write) -> io::Result<()> {
     write_list(out, "quarantined", metrics.quarantined.iter().cloned())
 }
 
-fn collider(collider: &Collider) -> String {
+/// The bodies by what they were tested by; a kind with many bodies is only counted.
+fn colliders(colliders: &[Collider]) -> Vec<String> {
+    let mut by_kind: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for collider in colliders {
+        by_kind
+            .entry(kind(collider))
+            .or_default()
+            .push(&collider.body);
+    }
+    let told = by_kind.iter().map(|(kind, bodies)| match bodies.len() {
+        1..=BODIES_NAMED => format!("{kind}: {}", bodies.join(", ")),
+        count => format!("{kind}: {count} bodies"),
+    });
+    told.collect()
+}
+
+fn kind(collider: &Collider) -> String {
+    let times = |count, by: &str| match count {
+        0 => None,
+        1 => Some(by.to_owned()),
+        n => Some(format!("{n} × {by}")),
+    };
     let parts = [
-        (collider.cube_parts, "cube"),
-        (collider.analytic_parts, "analytic"),
+        times(collider.cube_parts, "cube"),
+        times(collider.analytic_parts, "analytic"),
     ];
-    let parts = parts
-        .iter()
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, by)| match count {
-            1 => (*by).to_owned(),
-            n => format!("{n} × {by}"),
-        });
-    format!(
-        "{} {}",
-        collider.body,
-        parts.collect::<Vec<_>>().join(" + ")
-    )
+    parts.into_iter().flatten().collect::<Vec<_>>().join(" + ")
 }
 
 fn write_list(
@@ -167,6 +176,15 @@ fn write_list(
         return Ok(());
     }
     writeln!(out, "  {title:<11}  {}", items.join(", "))
+}
+
+/// A measured value; lengths below a decimetre in millimetres.
+fn with_unit(value: f64, unit: &str) -> String {
+    match unit {
+        "" => number(value),
+        "m" if value != 0.0 && value.abs() < 0.1 => format!("{} mm", number(value * 1e3)),
+        unit => format!("{} {unit}", number(value)),
+    }
 }
 
 /// A number with the digits that matter: whole, or four significant ones.
@@ -201,7 +219,7 @@ mod tests {
             text.contains("n/a   the state hash is 00 (only the cpu"),
             "{text}"
         );
-        assert!(text.contains("colliders    ball cube"), "{text}");
+        assert!(text.contains("collider     cube: ball"), "{text}");
         assert!(text.contains("gone: NOT RUN\n  no such <file>"), "{text}");
         assert!(
             text.ends_with("0 of 2 scenarios passed, cpu engine\n"),
@@ -210,12 +228,20 @@ mod tests {
     }
 
     #[test]
+    fn short_lengths_are_in_millimetres() {
+        assert_eq!(with_unit(0.0, "m"), "0 m");
+        assert_eq!(with_unit(0.00471875, "m"), "4.719 mm");
+        assert_eq!(with_unit(0.5, "m"), "0.5000 m");
+        assert_eq!(with_unit(40.0, "°"), "40 °");
+    }
+
+    #[test]
     fn numbers_keep_four_digits() {
         for (value, text) in [
             (0.0, "0"),
             (40.0, "40"),
             (12.25, "12.25"),
-            (0.012345, "0.01234"),
+            (0.0123, "0.01230"),
             (1.5e-5, "1.500e-5"),
             (123456.7, "1.235e5"),
         ] {

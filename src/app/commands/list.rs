@@ -1,19 +1,22 @@
 //! `sward list`.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::io::{self, Write};
+use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::app::Failure;
+use super::scene_file;
+use crate::app::{Failure, complain};
 use crate::run::Exit;
-use crate::scene::{load_scene, scene_files};
+use crate::scene::builtin::SCENES;
+use crate::scene::{LoadedScene, SceneError, scene_files};
 
 /// List scenes with their descriptions
 #[derive(Args, Debug)]
 pub struct Arguments {
-    /// Folders to look in
-    #[arg(value_name = "FOLDER", default_value = "scenes")]
+    /// Folders to look in; without one, the program's own scenes are listed, which other commands
+    /// take by name
+    #[arg(value_name = "FOLDER")]
     folders: Vec<PathBuf>,
     /// Another folder in which scenes' assets are looked up; may be repeated
     #[arg(long, value_name = "DIR")]
@@ -22,25 +25,34 @@ pub struct Arguments {
 
 /// Prints a line per scene. Invalid scenes are named on stderr.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
-    let mut exits = Vec::new();
+    let mut scenes: Vec<PathBuf> = Vec::new();
+    if arguments.folders.is_empty() {
+        scenes.extend(SCENES.iter().map(|scene| PathBuf::from(scene.name)));
+    }
     for folder in &arguments.folders {
-        for file in scene_files(folder)? {
-            exits.push(list_one(&file, &arguments.assets, out)?);
-        }
+        scenes.extend(scene_files(folder)?);
+    }
+    let mut exits = Vec::new();
+    for scene in &scenes {
+        let loaded = scene_file::load(scene, &arguments.assets);
+        exits.push(write_line(&scene.display().to_string(), loaded, out)?);
     }
     Ok(Exit::of_all(exits))
 }
 
-fn list_one(file: &Path, assets: &[PathBuf], out: &mut impl Write) -> Result<Exit, Failure> {
-    match load_scene(file, assets) {
+fn write_line(
+    name: &str,
+    loaded: Result<LoadedScene, SceneError>,
+    out: &mut impl Write,
+) -> io::Result<Exit> {
+    match loaded {
         Ok(loaded) => {
-            let about = loaded.scene.description.split_whitespace();
-            let about = about.collect::<Vec<_>>().join(" ");
-            writeln!(out, "{}\t{about}", file.display())?;
+            let words: Vec<&str> = loaded.scene.description.split_whitespace().collect();
+            writeln!(out, "{name:<16}  {}", words.join(" "))?;
             Ok(Exit::Ok)
         }
         Err(error) => {
-            eprintln!("sward: {error}");
+            complain(&error);
             Ok(Exit::Invalid)
         }
     }

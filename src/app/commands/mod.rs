@@ -4,6 +4,7 @@ pub mod blade_shape;
 pub mod doctor;
 pub mod list;
 pub mod run;
+mod scene_file;
 mod schema;
 
 use std::io;

@@ -1,23 +1,27 @@
 //! `sward run`.
 
-use std::fs;
-use std::io::{self, IsTerminal, Write};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, IsTerminal, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::app::Failure;
+use super::scene_file;
+use crate::app::{Failure, complain};
 use crate::run::report::{Report, Scenario};
-use crate::run::{Engine, EngineChoice, Exit, RunError, RunOptions, junit, run_scene, table};
-use crate::scene::{limits, load_scene};
+use crate::run::trace::Trace;
+use crate::run::{
+    Engine, EngineChoice, Exit, Frame, RunError, RunOptions, junit, run_scene, table,
+};
+use crate::scene::limits;
 use crate::sim::Grass;
 
 /// Run scenarios without a window and check their expectations
 #[derive(Args, Debug)]
 pub struct Arguments {
-    /// Scene files
+    /// Scene files, or names of the program's own scenes
     #[arg(value_name = "SCENE", required = true)]
     scenes: Vec<PathBuf>,
     /// What simulates the grass; by default the gpu on a hardware adapter, else the cpu
@@ -40,6 +44,9 @@ pub struct Arguments {
     /// Another folder in which assets are looked up; may be repeated
     #[arg(long, value_name = "DIR")]
     assets: Vec<PathBuf>,
+    /// Write a CSV row of measures for every frame
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
     /// Print the report as JSON
     #[arg(long)]
     json: bool,
@@ -61,12 +68,16 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     let options = options(arguments)?;
     let mut report = Report::new("cpu", None, options.hz);
     log::info!("engine: {}", report.engine);
-    for path in &arguments.scenes {
-        let scenario = run_one(path, arguments, &options);
+    let mut trace = open_trace(arguments)?;
+    for scene in &arguments.scenes {
+        let scenario = run_one(scene, arguments, &options, &mut trace);
         if let Some(error) = &scenario.error {
-            eprintln!("sward: {error}");
+            complain(error);
         }
         report.scenarios.push(scenario);
+    }
+    if let (Some(trace), Some(path)) = (trace, &arguments.trace) {
+        trace.finish().map_err(|e| Failure::file(path, e))?;
     }
     write_files(&report, arguments)?;
     let printed = if arguments.json {
@@ -104,22 +115,38 @@ fn options(arguments: &Arguments) -> Result<RunOptions, Failure> {
     })
 }
 
+type FileTrace = Trace<BufWriter<File>>;
+
+fn open_trace(arguments: &Arguments) -> Result<Option<FileTrace>, Failure> {
+    let Some(path) = &arguments.trace else {
+        return Ok(None);
+    };
+    let file = File::create(path).map_err(|e| Failure::file(path, e))?;
+    Ok(Some(Trace::new(BufWriter::new(file))))
+}
+
 /// Runs one scene; whatever goes wrong is part of the report, so that the others still run.
-fn run_one(path: &Path, arguments: &Arguments, options: &RunOptions) -> Scenario {
-    let name = path
-        .file_stem()
-        .unwrap_or(path.as_os_str())
-        .to_string_lossy()
-        .into_owned();
-    let loaded = match load_scene(path, &arguments.assets) {
+fn run_one(
+    scene: &Path,
+    arguments: &Arguments,
+    options: &RunOptions,
+    trace: &mut Option<FileTrace>,
+) -> Scenario {
+    let name = scene_file::name(scene);
+    let loaded = match scene_file::load(scene, &arguments.assets) {
         Ok(loaded) => loaded,
         Err(error) => return Scenario::broken(name, error.to_string(), Exit::Invalid),
     };
     let bar = progress_bar(&name);
+    let each_frame = |frame: &Frame<'_>| {
+        bar.set_position((frame.done * 1000.0) as u64);
+        if let Some(trace) = trace {
+            trace.frame(&name, frame);
+        }
+    };
     let outcome = catch_unwind(AssertUnwindSafe(|| {
         let engine = Engine::Cpu(Grass::new());
-        let progress = |share: f64| bar.set_position((share * 1000.0) as u64);
-        run_scene(&loaded, options, engine, progress).map(|outcome| Scenario::of(&outcome))
+        run_scene(&loaded, options, engine, each_frame).map(|outcome| Scenario::of(&outcome))
     }));
     bar.finish_and_clear();
     match outcome {

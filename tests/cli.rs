@@ -1,0 +1,167 @@
+//! The program from outside: exit codes, what goes to stdout, closed pipes.
+
+#![cfg(feature = "app")]
+
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+const STILL: &str = r#"(
+    description: "Nothing moves.",
+    duration_s: 0.1,
+    grass: (density_per_m2: 16.0),
+    expect: [SimulatedPlants(at_most: 0)],
+)"#;
+
+const WRONG: &str = r#"(
+    duration_s: 0.1,
+    expect: [SimulatedPlants(at_least: 1)],
+)"#;
+
+fn sward(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_sward"))
+        .args(arguments)
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program starts")
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("no signal ended it")
+}
+
+/// A scene in this test's own folder.
+fn scene(name: &str, text: &str) -> String {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("cli");
+    std::fs::create_dir_all(&folder).expect("a writable target folder");
+    let path = folder.join(name);
+    std::fs::write(&path, text).expect("a writable target folder");
+    path.display().to_string()
+}
+
+fn json(output: &Output) -> serde_json::Value {
+    serde_json::from_slice(&output.stdout).expect("stdout is one JSON value")
+}
+
+#[test]
+fn usage_errors_are_2_and_help_is_0() {
+    for wrong in [
+        &["bogus"][..],
+        &["run"],
+        &["blade-shape", "--segments", "8"],
+        &["blade-shape", "--segments", "0", "--stiffness", "1"],
+        &["blade-shape", "--segments", "8", "--stiffness", "-1"],
+        &[
+            "blade-shape",
+            "--segments",
+            "8",
+            "--stiffness",
+            "1",
+            "--root",
+            "3k",
+        ],
+        &["run", "--hz", "NaN", "x.ron"],
+        &["run", "--substep", "-1", "x.ron"],
+    ] {
+        let output = sward(wrong);
+        assert_eq!(code(&output), 2, "{wrong:?}");
+        assert!(
+            output.stdout.is_empty() && !output.stderr.is_empty(),
+            "{wrong:?}"
+        );
+    }
+    assert_eq!(code(&sward(&["--help"])), 0);
+    assert_eq!(code(&sward(&["--version"])), 0);
+}
+
+#[test]
+fn a_blade_as_json() {
+    let output = sward(&[
+        "blade-shape",
+        "--segments",
+        "8",
+        "--stiffness",
+        "32",
+        "--json",
+    ]);
+    assert_eq!(code(&output), 0);
+    let shape = json(&output);
+    let mut keys: Vec<_> = shape.as_object().expect("an object").keys().collect();
+    keys.sort();
+    assert_eq!(
+        keys,
+        ["angles_rad", "energy", "iterations", "nodes", "residual"]
+    );
+    assert_eq!(shape["angles_rad"].as_array().map(Vec::len), Some(8));
+    assert_eq!(shape["nodes"].as_array().map(Vec::len), Some(9));
+    let tip = shape["nodes"][8][0].as_f64().expect("a number");
+    assert!((tip - 0.7575288094).abs() < 1e-10, "{tip}");
+}
+
+#[test]
+fn the_gravest_scene_decides_and_the_others_still_run() {
+    let still = scene("still.ron", STILL);
+    let wrong = scene("wrong.ron", WRONG);
+    let broken = scene("broken.ron", "(duration_s: -1.0)");
+    let run = |scenes: &[&str]| sward(&[&["run", "--engine", "cpu", "--json"], scenes].concat());
+    assert_eq!(code(&run(&[&still])), 0);
+    assert_eq!(code(&run(&[&still, &wrong])), 1);
+    let output = run(&[&broken, &still, &wrong]);
+    assert_eq!(code(&output), 3);
+    let report = json(&output);
+    assert_eq!(report["engine"], "cpu");
+    let passed: Vec<_> = (0..3)
+        .map(|i| report["scenarios"][i]["passed"].as_bool())
+        .collect();
+    assert_eq!(passed, [Some(false), Some(true), Some(false)]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        stderr.contains("broken.ron:1:") && stderr.contains("duration_s"),
+        "{stderr}"
+    );
+    assert_eq!(report["scenarios"][1]["metrics"]["state_bytes_peak"], 0);
+}
+
+#[test]
+fn a_closed_pipe_ends_the_program_quietly() {
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    let output = Command::new(env!("CARGO_BIN_EXE_sward"))
+        .arg("schema")
+        .stdout(writer)
+        .stderr(Stdio::piped())
+        .output()
+        .expect("the program starts");
+    assert_eq!(code(&output), 0);
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+}
+
+#[test]
+fn every_machine_has_a_doctor() {
+    let output = sward(&["doctor"]);
+    assert_eq!(code(&output), 0);
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(
+        text.contains("cpu engine:") && text.contains("adapter"),
+        "{text}"
+    );
+}
+
+#[test]
+fn shipped_scenes_are_known_by_name() {
+    let output = sward(&["list"]);
+    assert_eq!(code(&output), 0);
+    let listed = String::from_utf8(output.stdout).expect("text");
+    assert!(
+        listed.lines().any(|line| line.starts_with("meadow ")),
+        "{listed}"
+    );
+    let trace = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("still.csv");
+    let trace = trace.display().to_string();
+    let output = sward(&[
+        "run", "still", "--engine", "cpu", "--hz", "15", "--trace", &trace,
+    ]);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("still: "));
+    let rows = std::fs::read_to_string(&trace).expect("the trace was written");
+    // Two seconds at 15 Hz and the head.
+    assert_eq!(rows.lines().count(), 31);
+}
