@@ -1,7 +1,8 @@
 // Relax: what a touched plant does within one sub-step. Twin: src/sim/relax.rs.
 //
 // One invocation per touched plant, sweeps and rounds in sequence, so no two write the same place.
-// `push_out_all` is called at one place only: software drivers pay for every inlined copy.
+// Pushing out and laying out ask the bodies at one place only, in `meet_bodies`: software drivers
+// pay for every inlined copy of that.
 #import "shared/contact.wgsl"
 #import "shared/ground.wgsl"
 #import "shared/plant.wgsl"
@@ -20,21 +21,83 @@ var<private> nodes: array<vec3f, MAX_NODES>;
 var<private> wind_nodes: array<vec3f, MAX_NODES>;
 var<private> faces: array<u32, MAX_SEGMENTS>;
 
-// Pushes every node out of every part that reaches the plant, parts in their order.
-fn push_out_all(tile: TileRecord, reach: f32, share: f32) -> bool {
-    var pushed = false;
-    for (var contact = tile.first_contact; contact < tile.end_contact; contact++) {
-        if !reaches(contact, nodes[0], reach) {
+// Some unit vector at right angles to a unit vector.
+fn across(n: vec3f) -> vec3f {
+    let axis = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(n.x) < 0.5);
+    return unit_or(axis - n * dot(n, axis), UP);
+}
+
+// Puts node j + 1 at a segment's length from node j, on the ground if it would dip into it.
+fn lay_out(tile: TileRecord, length: f32, j: u32) {
+    let rest = unit_or(wind_nodes[j + 1u] - wind_nodes[j], UP);
+    let direction = unit_or(nodes[j + 1u] - nodes[j], rest);
+    var next = nodes[j] + direction * length;
+    let height = ground_in_anchor(tile, next.x, next.z);
+    if next.y < height {
+        let rise = clamp(height - nodes[j].y, -length, length);
+        let run = sqrt(max(length * length - rise * rise, 0.0));
+        let sideways = unit_or(vec3f(rest.x, 0.0, rest.z), vec3f(1.0, 0.0, 0.0));
+        let flat = unit_or(vec3f(direction.x, 0.0, direction.z), sideways);
+        next = nodes[j] + flat * run + UP * rise;
+    }
+    nodes[j + 1u] = next;
+}
+
+// Turns segment j about its lower node until its upper one is out of a part, where its length
+// allows that.
+fn turn_out(length: f32, j: u32, n: vec3f, depth: f32) {
+    let segment = nodes[j + 1u] - nodes[j];
+    let along = dot(segment, n);
+    let rise = along + depth;
+    let run = length * length - rise * rise;
+    if run <= 0.0 {
+        nodes[j + 1u] += n * depth;
+        return;
+    }
+    let rest = unit_or(wind_nodes[j + 1u] - wind_nodes[j], UP);
+    let sideways = unit_or(rest - n * dot(rest, n), across(n));
+    let flat = unit_or(segment - n * along, sideways);
+    nodes[j + 1u] = nodes[j] + n * rise + flat * sqrt(run);
+}
+
+// Pushes every node out of every part that reaches the plant, part after part; or, `laying`, lays
+// out and turns out node after node. Returns a bit per node that was inside a part.
+fn meet_bodies(tile: TileRecord, reach: f32, length: f32, share: f32, laying: bool) -> u32 {
+    let parts = tile.end_contact - tile.first_contact;
+    var pushed = 0u;
+    var posed = NO_FACE;
+    var pose: Pose;
+    var near = false;
+    for (var step = 0u; step < parts * field.segments; step++) {
+        var part = step / field.segments;
+        var j = step % field.segments;
+        if laying {
+            j = step / parts;
+            part = step % parts;
+            if part == 0u {
+                lay_out(tile, length, j);
+            }
+        }
+        let contact = tile.first_contact + part;
+        if posed != contact {
+            posed = contact;
+            pose = pose_at(contact, share);
+            near = reaches(contact, nodes[0], reach);
+        }
+        if !near {
             continue;
         }
-        let pose = pose_at(contact, share);
-        for (var j = 0u; j < field.segments; j++) {
-            let exit = way_out(contact, pose, nodes[j + 1u], faces[j]);
-            if exit.face != NO_FACE {
-                nodes[j + 1u] += rotate(pose.turn, exit.normal) * exit.depth;
-                faces[j] = contacts[contact].key | ((exit.face + 1u) & FACE_MASK);
-                pushed = true;
-            }
+        let exit = way_out(contact, pose, nodes[j + 1u], faces[j]);
+        if exit.face == NO_FACE {
+            continue;
+        }
+        faces[j] = contacts[contact].key | ((exit.face + 1u) & FACE_MASK);
+        pushed |= 2u << j;
+        let n = rotate(pose.turn, exit.normal);
+        if laying {
+            turn_out(length, j, n, exit.depth);
+        } else {
+            nodes[j + 1u] += n * exit.depth;
         }
     }
     return pushed;
@@ -52,12 +115,17 @@ fn bend_springs() {
     }
 }
 
-// Follow the leader: lengths from root to tip, directions kept.
-fn restore_lengths(length: f32) {
-    for (var j = 0u; j < field.segments; j++) {
-        let rest = unit_or(wind_nodes[j + 1u] - wind_nodes[j], UP);
-        let direction = unit_or(nodes[j + 1u] - nodes[j], rest);
-        nodes[j + 1u] = nodes[j] + direction * length;
+// Structural springs from tip to root: a node below a pushed one follows it to the segment's
+// length.
+fn follow_pushed(pushed: u32, length: f32) {
+    var held = false;
+    for (var j = field.segments - 1u; j >= 1u; j--) {
+        held = held || ((pushed >> (j + 1u)) & 1u) == 1u;
+        if held && ((pushed >> j) & 1u) == 0u {
+            let rest = unit_or(wind_nodes[j] - wind_nodes[j + 1u], -UP);
+            let inward = unit_or(nodes[j] - nodes[j + 1u], rest);
+            nodes[j] = nodes[j + 1u] + inward * length;
+        }
     }
 }
 
@@ -81,19 +149,27 @@ fn respond(tile: TileRecord, reach: f32, sweeps: u32, length: f32) -> u32 {
     var rounds_used = 0u;
     for (var sweep = 1u; sweep <= sweeps; sweep++) {
         let share = f32(sweep) / f32(sweeps);
-        // Round 0 is the first push, which decides whether any round follows.
-        for (var round = 0u; round <= tick.most_rounds; round++) {
-            if round > 0u {
+        var pushed = 0u;
+        // Step 0 is the first push, which decides whether any round follows. Then each round takes
+        // two steps: springs and laying out, and pushing.
+        for (var step = 0u; step <= 2u * tick.most_rounds; step++) {
+            let laying = (step & 1u) == 1u;
+            if laying {
                 bend_springs();
-                restore_lengths(length);
+                follow_pushed(pushed, length);
             }
-            let pushed = push_out_all(tile, reach, share);
-            if round == 0u {
-                if !pushed {
+            let met = meet_bodies(tile, reach, length, share, laying);
+            if laying {
+                continue;
+            }
+            pushed = met;
+            if step == 0u {
+                if pushed == 0u {
                     break;
                 }
                 continue;
             }
+            let round = step / 2u;
             keep_above_ground(tile);
             rounds_used = max(rounds_used, round);
             if round >= tick.fewest_rounds && largest_strain(length) <= tick.strain_limit {

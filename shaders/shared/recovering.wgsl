@@ -15,6 +15,8 @@ struct Walk {
     length: f32,
     // The share t³ of the offset that is left; 0 for the wind pose itself.
     left: f32,
+    // True in the very tick of a contact, which leaves the pose as it is.
+    fresh: bool,
     // The node reached, and the same node of the wind pose.
     node: vec3f,
     wind: vec3f,
@@ -34,6 +36,7 @@ fn walk_from_root(tile: TileRecord, plant: Plant, touched_at: u32) -> Walk {
     walk.length = segment_length(plant);
     if touched_at != 0u {
         walk.left = offset_left(tick.now - touched_at);
+        walk.fresh = tick.now == touched_at;
     }
     walk.node = plant.root;
     walk.wind = plant.root;
@@ -51,6 +54,10 @@ fn walk_up(walk: ptr<function, Walk>, plant: Plant, j: u32, offset: vec3f) {
         return;
     }
     let bent = above + offset * (*walk).left;
+    if (*walk).fresh {
+        (*walk).node = bent;
+        return;
+    }
     let rest = unit_or(above - below, UP);
     (*walk).node += unit_or(bent - (*walk).node, rest) * length;
 }
