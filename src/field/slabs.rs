@@ -47,6 +47,11 @@ impl SlabPool {
         self.high_water
     }
 
+    /// Lowers the limit to what an engine can hold; slabs already in use stay.
+    pub fn lower_limit(&mut self, limit: u32) {
+        self.limit = self.limit.min(limit).max(self.high_water);
+    }
+
     pub fn limit(&self) -> u32 {
         self.limit
     }

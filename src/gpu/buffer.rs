@@ -1,6 +1,7 @@
 //! Buffers that know what they hold, checked against the device's limits before they are made.
 
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use bytemuck::Pod;
 use wgpu::BufferUsages;
@@ -152,16 +153,48 @@ impl<T: Pod> Buffer<T> {
         Ok(grow)
     }
 
+    /// Makes room for `len` elements, keeping those there are. Returns true if the buffer was
+    /// replaced, so that bind groups must be made anew.
+    ///
+    /// # Errors
+    /// As for [`Buffer::new`].
+    pub fn grow_to(&mut self, gpu: &Gpu, len: usize) -> Result<bool, GpuError> {
+        if len <= self.len {
+            return Ok(false);
+        }
+        let grown = Self::new(gpu, self.label, len, self.raw.usage())?;
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&self.raw, 0, &grown.raw, 0, self.raw.size());
+        gpu.queue.submit([encoder.finish()]);
+        *self = grown;
+        Ok(true)
+    }
+
     /// Reads the first `count` elements back. Waits for the device; for tests and headless runs.
     ///
     /// # Errors
     /// `ReadBack` or the device's own errors.
     pub fn read(&self, gpu: &Gpu, count: usize) -> Result<Vec<T>, GpuError> {
-        let count = count.min(self.len);
+        self.read_runs(gpu, &[0..count.min(self.len)])
+    }
+
+    /// Reads runs of elements back, one after the other. Waits for the device.
+    ///
+    /// # Errors
+    /// As for [`Buffer::read`]; runs beyond the buffer's end are refused.
+    pub fn read_runs(&self, gpu: &Gpu, runs: &[Range<usize>]) -> Result<Vec<T>, GpuError> {
+        if let Some(run) = runs.iter().find(|run| run.end > self.len) {
+            return Err(GpuError::ReadBack {
+                what: self.label.to_owned(),
+                reason: format!("elements {run:?} were asked for, there are {}", self.len),
+            });
+        }
+        let count: usize = runs.iter().map(ExactSizeIterator::len).sum();
         if count == 0 {
             return Ok(Vec::new());
         }
-        let bytes = ((count * size_of::<T>()) as u64).next_multiple_of(4);
+        let element = size_of::<T>() as u64;
+        let bytes = (count as u64 * element).next_multiple_of(4);
         let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("read back"),
             size: bytes,
@@ -169,7 +202,19 @@ impl<T: Pod> Buffer<T> {
             mapped_at_creation: false,
         });
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(&self.raw, 0, &copy, 0, bytes);
+        let mut at = 0;
+        for run in runs.iter().filter(|run| !run.is_empty()) {
+            // Copies are in steps of four bytes; what one run's last step adds, the next overwrites.
+            let run_bytes = (run.len() as u64 * element).next_multiple_of(4);
+            encoder.copy_buffer_to_buffer(
+                &self.raw,
+                run.start as u64 * element,
+                &copy,
+                at,
+                run_bytes,
+            );
+            at += run.len() as u64 * element;
+        }
         gpu.queue.submit([encoder.finish()]);
         let raw = read_mapped(gpu, self.label, &copy)?;
         Ok(bytemuck::pod_collect_to_vec(&raw[..count * size_of::<T>()]))

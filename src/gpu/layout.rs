@@ -27,10 +27,17 @@ pub trait GpuStruct: Pod {
 
 /// Layouts of the structs that the shaders of this layer read.
 pub fn layouts() -> Vec<StructLayout> {
-    use super::field_data::{FieldUniform, SpeciesUniform, WaveUniform, WindUniform};
+    use super::field_data::{FieldUniform, SpeciesUniform, TileRecord, WaveUniform, WindUniform};
+    use super::tick_data::{ContactRecord, CubeJob, PartRecord, SolidRecord, TickUniform};
     vec![
+        ContactRecord::layout(),
+        CubeJob::layout(),
         FieldUniform::layout(),
+        PartRecord::layout(),
+        SolidRecord::layout(),
         SpeciesUniform::layout(),
+        TickUniform::layout(),
+        TileRecord::layout(),
         WaveUniform::layout(),
         WindUniform::layout(),
     ]

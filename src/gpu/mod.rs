@@ -6,10 +6,17 @@
 //! the adapter has them and for timestamps, which are optional.
 
 mod buffer;
+pub mod cubes;
 mod device;
 mod error;
 pub mod field_data;
+mod grass;
+mod grass_buffers;
+mod grass_state;
 pub mod layout;
+pub mod passes;
+mod tick;
+pub mod tick_data;
 mod timing;
 pub mod wgsl;
 
@@ -18,5 +25,8 @@ pub use buffer::{Buffer, checked_bytes};
 pub use device::{AdapterReport, Gpu};
 pub use error::GpuError;
 pub use field_data::FieldBuffers;
+pub use grass::{Dispatches, GpuGrass, GrassKernels};
+pub use grass_state::{Counts, GpuState};
 pub use layout::GpuStruct;
+pub use tick::{TickError, tick};
 pub use timing::PassTimer;

@@ -8,11 +8,17 @@
 use std::fmt::Write;
 
 use super::field_data::{NO_SLAB, TILE_COLLIDING, TILE_RECOVERING, TILE_RESTING};
+use super::grass_buffers::{RELAX_GROUPS, TOUCHED_HEADER};
+use super::passes::{MOST_GROUPS, WORKGROUP};
+use super::tick_data::{SOLID_BALL, SOLID_BOX, SOLID_CAPSULE, SOLID_CONVEX, SOLID_CYLINDER};
 use crate::base::trig::SINE_QUARTER;
 use crate::field::grid::ANCHOR_CELLS;
 use crate::field::plant::MAX_SPECIES;
-use crate::field::pose::MAX_NODES;
+use crate::field::pose::{MAX_NODES, MAX_SEGMENTS};
 use crate::field::wind::WAVES;
+use crate::sim::contact::FACE_MASK;
+use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIT};
+use crate::sim::solid::{KEEP_FACE, NO_FACE};
 
 /// A WGSL file, embedded, with the Rust constants it uses.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +61,7 @@ value_from! {
     u32 => |v| Value::U32(v),
     usize => |v| Value::U32(v as u32),
     i32 => |v| Value::I32(v),
+    f64 => |v| Value::F32(v as f32),
     f32 => |v| Value::F32(v),
 }
 
@@ -104,11 +111,28 @@ macro_rules! wgsl_file {
 
 /// Files that any layer's shaders may import.
 pub const SHARED: &[WgslFile] = &[
+    wgsl_file!("shared/contact.wgsl", FACE_MASK, NO_FACE),
+    wgsl_file!("shared/cube.wgsl", HIT, HIDDEN, KEEP_FACE, NO_FACE),
     wgsl_file!("shared/field.wgsl", MAX_SPECIES),
     wgsl_file!("shared/ground.wgsl"),
     wgsl_file!("shared/philox.wgsl"),
     wgsl_file!("shared/plant.wgsl", ANCHOR_CELLS),
     wgsl_file!("shared/pose.wgsl", MAX_NODES),
+    wgsl_file!("shared/recovering.wgsl"),
+    wgsl_file!("shared/rigid.wgsl"),
+    wgsl_file!(
+        "shared/solid.wgsl",
+        KEEP_FACE,
+        NO_FACE,
+        SOLID_BALL,
+        SOLID_BOX,
+        SOLID_CAPSULE,
+        SOLID_CONVEX,
+        SOLID_CYLINDER
+    ),
+    wgsl_file!("shared/state.wgsl"),
+    wgsl_file!("shared/texel.wgsl", DEPTH_STEPS, HIT, HIDDEN),
+    wgsl_file!("shared/tick.wgsl"),
     wgsl_file!(
         "shared/tile.wgsl",
         NO_SLAB,
@@ -116,12 +140,27 @@ pub const SHARED: &[WgslFile] = &[
         TILE_RECOVERING,
         TILE_RESTING
     ),
+    wgsl_file!("shared/touched.wgsl", TOUCHED_HEADER),
     wgsl_file!("shared/trig.wgsl", SINE_QUARTER),
     wgsl_file!("shared/wind.wgsl", WAVES),
 ];
 
 /// One file per compute pass.
-pub const PASSES: &[WgslFile] = &[];
+pub const PASSES: &[WgslFile] = &[
+    wgsl_file!("collide.wgsl", WORKGROUP),
+    wgsl_file!("depth_cube.wgsl", WORKGROUP),
+    wgsl_file!("recover.wgsl", WORKGROUP),
+    wgsl_file!(
+        "relax.wgsl",
+        FACE_MASK,
+        MAX_NODES,
+        MAX_SEGMENTS,
+        MOST_GROUPS,
+        NO_FACE,
+        RELAX_GROUPS,
+        WORKGROUP
+    ),
+];
 
 /// Why a shader could not be put together.
 #[derive(Debug, thiserror::Error, PartialEq)]

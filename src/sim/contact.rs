@@ -29,7 +29,8 @@ enum ColliderOf<'a, R> {
 
 /// Bits of a vertex's memory that hold the face; 0 there means none, others are the face + 1.
 const FACE_BITS: u32 = 8;
-const FACE_MASK: u32 = (1 << FACE_BITS) - 1;
+/// The bits of the face.
+pub const FACE_MASK: u32 = (1 << FACE_BITS) - 1;
 /// Bits that tell the parts of a body apart.
 const PART_BITS: u32 = 8;
 

@@ -12,7 +12,7 @@ use crate::field::{Field, Nodes, Plant, wind_pose};
 
 use super::collide;
 use super::contact::Touch;
-use super::depth_cube::DepthCube;
+use super::depth_cube::{COVER_MARGIN_M, DepthCube};
 use super::meadow::Meadow;
 use super::recover::recovering_pose;
 use super::relax::{self, Place, RelaxSettings};
@@ -153,13 +153,11 @@ impl<R: Real> Grass<R> {
 fn draw_cube(parts: &super::parts::Parts, index: usize, resolution: u32) -> DepthCube {
     let part = &parts.parts[index];
     let siblings: Vec<_> = parts.siblings(index).collect();
-    // A tenth of a millimetre, so that faces that merely meet do not hide each other.
-    let margin = 1e-4;
     DepthCube::draw(&part.grown, resolution, |point| {
         let in_body = part.pose.point(Vec3::of(point.to_f64()));
         siblings
             .iter()
-            .any(|other| other.solid.depth(other.pose.inverse_point(in_body)) > margin)
+            .any(|other| other.solid.depth(other.pose.inverse_point(in_body)) > COVER_MARGIN_M)
     })
 }
 

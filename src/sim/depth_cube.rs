@@ -27,6 +27,9 @@ pub const HIDDEN: u32 = 1 << 30;
 pub const DEPTH_STEPS: f64 = 536_870_912.0;
 /// A way out through a hidden face counts as longer by this, in metres: more than any body's size.
 const HIDDEN_M: f64 = 1000.0;
+/// A surface point this deep inside a neighbouring part is hidden, in metres: faces that merely
+/// meet do not hide each other.
+pub const COVER_MARGIN_M: f64 = 1e-4;
 const DEPTH_MASK: u32 = HIDDEN - 1;
 
 /// The six faces of one part. Face 2a looks along −axis a from the upper bound, face 2a + 1 along

@@ -79,18 +79,27 @@ impl Parts {
         self.parts[part].wants_cube = true;
     }
 
+    /// Parts that a cube was asked for.
+    pub fn wanted(&self) -> impl Iterator<Item = usize> {
+        (0..self.parts.len()).filter(|&n| self.parts[n].wants_cube)
+    }
+
     /// Parts that need a cube and have none yet.
     pub fn undrawn(&self) -> Vec<usize> {
-        let undrawn = |part: &Part| part.wants_cube && part.cube.is_none();
-        (0..self.parts.len())
-            .filter(|&n| undrawn(&self.parts[n]))
+        self.wanted()
+            .filter(|&n| self.parts[n].cube.is_none())
             .collect()
+    }
+
+    /// Indices of the parts of the shape that a part belongs to.
+    pub fn shape_of(&self, part: usize) -> std::ops::Range<usize> {
+        let shape = self.first.partition_point(|&f| f as usize <= part) - 1;
+        self.of_shape(shape as u32)
     }
 
     /// The other parts of the same shape.
     pub fn siblings(&self, part: usize) -> impl Iterator<Item = &Part> {
-        let shape = self.first.partition_point(|&f| f as usize <= part) - 1;
-        self.of_shape(shape as u32)
+        self.shape_of(part)
             .filter(move |&n| n != part)
             .map(|n| &self.parts[n])
     }

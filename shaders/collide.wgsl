@@ -1,0 +1,59 @@
+// Collide: which plants a body touches in this sub-step. Twin: src/sim/collide.rs.
+//
+// One invocation per plant of a colliding tile (workgroup y is the tile). The nodes are met while
+// walking up the plant, so none are stored; a plant counts as touched if any node is inside any part
+// in any sweep, whatever the order.
+#import "shared/contact.wgsl"
+#import "shared/plant.wgsl"
+#import "shared/recovering.wgsl"
+#import "shared/state.wgsl"
+#import "shared/tick.wgsl"
+#import "shared/tile.wgsl"
+#import "shared/touched.wgsl"
+
+@group(1) @binding(1) var<storage, read> tiles: array<TileRecord>;
+@group(1) @binding(3) var<storage, read> state: array<vec4u>;
+
+// True where a node is inside a part that reaches the plant, in any sweep.
+fn node_touched(tile: TileRecord, plant: Plant, node: vec3f, sweeps: u32) -> bool {
+    for (var contact = tile.first_contact; contact < tile.end_contact; contact++) {
+        if !reaches(contact, plant.root, plant.height_m) {
+            continue;
+        }
+        for (var sweep = 1u; sweep <= sweeps; sweep++) {
+            if holds(contact, pose_at(contact, f32(sweep) / f32(sweeps)), node) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn collide(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let place = group.x * WORKGROUP + local;
+    if group.y >= tick.colliding || place >= field.plants_per_tile {
+        return;
+    }
+    let tile = tiles[group.y];
+    let plant = plant_at(tile, place);
+    if !plant.grows {
+        return;
+    }
+    let sweeps = sweeps_for(tile, plant.root, plant.height_m);
+    if sweeps == 0u {
+        return;
+    }
+    let row = plant_row(tile.slab, place);
+    var walk = walk_from_root(tile, plant, state[row].x);
+    for (var j = 0u; j < field.segments; j++) {
+        walk_up(&walk, plant, j, bitcast<vec3f>(state[row + 1u + j].xyz));
+        if node_touched(tile, plant, walk.node, sweeps) {
+            add_touched(Touched(group.y, place, sweeps));
+            return;
+        }
+    }
+}

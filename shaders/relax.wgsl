@@ -1,0 +1,224 @@
+// Relax: what a touched plant does within one sub-step. Twin: src/sim/relax.rs.
+//
+// One invocation per touched plant, sweeps and rounds in sequence, so no two write the same place.
+// Pushing out and laying out ask the bodies at one place only, in `meet_bodies`: software drivers
+// pay for every inlined copy of that.
+#import "shared/contact.wgsl"
+#import "shared/ground.wgsl"
+#import "shared/plant.wgsl"
+#import "shared/recovering.wgsl"
+#import "shared/state.wgsl"
+#import "shared/tick.wgsl"
+#import "shared/tile.wgsl"
+#import "shared/touched.wgsl"
+
+@group(1) @binding(1) var<storage, read> tiles: array<TileRecord>;
+@group(1) @binding(3) var<storage, read_write> state: array<vec4u>;
+// Workgroups of every pass, three words each; `count_groups` sets those of `relax`.
+@group(1) @binding(7) var<storage, read_write> pass_groups: array<u32>;
+
+var<private> nodes: array<vec3f, MAX_NODES>;
+var<private> wind_nodes: array<vec3f, MAX_NODES>;
+var<private> faces: array<u32, MAX_SEGMENTS>;
+
+// Some unit vector at right angles to a unit vector.
+fn across(n: vec3f) -> vec3f {
+    let axis = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(n.x) < 0.5);
+    return unit_or(axis - n * dot(n, axis), UP);
+}
+
+// Puts node j + 1 at a segment's length from node j, on the ground if it would dip into it.
+fn lay_out(tile: TileRecord, length: f32, j: u32) {
+    let rest = unit_or(wind_nodes[j + 1u] - wind_nodes[j], UP);
+    let direction = unit_or(nodes[j + 1u] - nodes[j], rest);
+    var next = nodes[j] + direction * length;
+    let height = ground_in_anchor(tile, next.x, next.z);
+    if next.y < height {
+        let rise = clamp(height - nodes[j].y, -length, length);
+        let run = sqrt(max(length * length - rise * rise, 0.0));
+        let sideways = unit_or(vec3f(rest.x, 0.0, rest.z), vec3f(1.0, 0.0, 0.0));
+        let flat = unit_or(vec3f(direction.x, 0.0, direction.z), sideways);
+        next = nodes[j] + flat * run + UP * rise;
+    }
+    nodes[j + 1u] = next;
+}
+
+// Turns segment j about its lower node until its upper one is out of a part, where its length
+// allows that.
+fn turn_out(length: f32, j: u32, n: vec3f, depth: f32) {
+    let segment = nodes[j + 1u] - nodes[j];
+    let along = dot(segment, n);
+    let rise = along + depth;
+    let run = length * length - rise * rise;
+    if run <= 0.0 {
+        nodes[j + 1u] += n * depth;
+        return;
+    }
+    let rest = unit_or(wind_nodes[j + 1u] - wind_nodes[j], UP);
+    let sideways = unit_or(rest - n * dot(rest, n), across(n));
+    let flat = unit_or(segment - n * along, sideways);
+    nodes[j + 1u] = nodes[j] + n * rise + flat * sqrt(run);
+}
+
+// Pushes every node out of every part that reaches the plant, part after part; or, `laying`, lays
+// out and turns out node after node. Returns a bit per node that was inside a part.
+fn meet_bodies(tile: TileRecord, reach: f32, length: f32, share: f32, laying: bool) -> u32 {
+    let parts = tile.end_contact - tile.first_contact;
+    var pushed = 0u;
+    var posed = NO_FACE;
+    var pose: Pose;
+    var near = false;
+    for (var step = 0u; step < parts * field.segments; step++) {
+        var part = step / field.segments;
+        var j = step % field.segments;
+        if laying {
+            j = step / parts;
+            part = step % parts;
+            if part == 0u {
+                lay_out(tile, length, j);
+            }
+        }
+        let contact = tile.first_contact + part;
+        if posed != contact {
+            posed = contact;
+            pose = pose_at(contact, share);
+            near = reaches(contact, nodes[0], reach);
+        }
+        if !near {
+            continue;
+        }
+        let exit = way_out(contact, pose, nodes[j + 1u], faces[j]);
+        if exit.face == NO_FACE {
+            continue;
+        }
+        faces[j] = contacts[contact].key | ((exit.face + 1u) & FACE_MASK);
+        pushed |= 2u << j;
+        let n = rotate(pose.turn, exit.normal);
+        if laying {
+            turn_out(length, j, n, exit.depth);
+        } else {
+            nodes[j + 1u] += n * exit.depth;
+        }
+    }
+    return pushed;
+}
+
+fn bend_springs() {
+    for (var j = 0u; j + 1u < field.segments; j++) {
+        let rest = length(wind_nodes[j + 2u] - wind_nodes[j]);
+        let across = nodes[j + 2u] - nodes[j];
+        let correction = unit_or(across, UP) * (tick.bend * (length(across) - rest));
+        // The root is pinned: it has no responsibility, its partner has all of it.
+        let lower = select(0.5, 0.0, j == 0u);
+        nodes[j] += correction * lower;
+        nodes[j + 2u] -= correction * (1.0 - lower);
+    }
+}
+
+// Structural springs from tip to root: a node below a pushed one follows it to the segment's
+// length.
+fn follow_pushed(pushed: u32, length: f32) {
+    var held = false;
+    for (var j = field.segments - 1u; j >= 1u; j--) {
+        held = held || ((pushed >> (j + 1u)) & 1u) == 1u;
+        if held && ((pushed >> j) & 1u) == 0u {
+            let rest = unit_or(wind_nodes[j] - wind_nodes[j + 1u], -UP);
+            let inward = unit_or(nodes[j] - nodes[j + 1u], rest);
+            nodes[j] = nodes[j + 1u] + inward * length;
+        }
+    }
+}
+
+fn keep_above_ground(tile: TileRecord) {
+    for (var j = 1u; j <= field.segments; j++) {
+        let height = ground_in_anchor(tile, nodes[j].x, nodes[j].z);
+        nodes[j].y = max(nodes[j].y, height);
+    }
+}
+
+fn largest_strain(rest: f32) -> f32 {
+    var worst = 0.0;
+    for (var j = 0u; j < field.segments; j++) {
+        worst = max(worst, abs(length(nodes[j + 1u] - nodes[j]) / rest - 1.0));
+    }
+    return worst;
+}
+
+// Runs one sub-step; returns the largest number of rounds a sweep took.
+fn respond(tile: TileRecord, reach: f32, sweeps: u32, length: f32) -> u32 {
+    var rounds_used = 0u;
+    for (var sweep = 1u; sweep <= sweeps; sweep++) {
+        let share = f32(sweep) / f32(sweeps);
+        var pushed = 0u;
+        // Step 0 is the first push, which decides whether any round follows. Then each round takes
+        // two steps: springs and laying out, and pushing.
+        for (var step = 0u; step <= 2u * tick.most_rounds; step++) {
+            let laying = (step & 1u) == 1u;
+            if laying {
+                bend_springs();
+                follow_pushed(pushed, length);
+            }
+            let met = meet_bodies(tile, reach, length, share, laying);
+            if laying {
+                continue;
+            }
+            pushed = met;
+            if step == 0u {
+                if pushed == 0u {
+                    break;
+                }
+                continue;
+            }
+            let round = step / 2u;
+            keep_above_ground(tile);
+            rounds_used = max(rounds_used, round);
+            if round >= tick.fewest_rounds && largest_strain(length) <= tick.strain_limit {
+                break;
+            }
+        }
+    }
+    return rounds_used;
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn relax(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = (group.y * groups.x + group.x) * WORKGROUP + local;
+    if index >= atomicLoad(&touched[0]) {
+        return;
+    }
+    let entry = touched_at(index);
+    let tile = tiles[entry.tile];
+    let plant = plant_at(tile, entry.place);
+    let row = plant_row(tile.slab, entry.place);
+    var walk = walk_from_root(tile, plant, state[row].x);
+    nodes[0] = walk.node;
+    wind_nodes[0] = walk.wind;
+    for (var j = 0u; j < field.segments; j++) {
+        let stored = state[row + 1u + j];
+        walk_up(&walk, plant, j, bitcast<vec3f>(stored.xyz));
+        nodes[j + 1u] = walk.node;
+        wind_nodes[j + 1u] = walk.wind;
+        faces[j] = stored.w;
+    }
+    let rounds = respond(tile, plant.height_m, entry.sweeps, walk.length);
+    atomicMax(&touched[1], rounds);
+    for (var j = 0u; j < field.segments; j++) {
+        let offset = nodes[j + 1u] - wind_nodes[j + 1u];
+        state[row + 1u + j] = vec4u(bitcast<vec3u>(offset), faces[j]);
+    }
+    state[row] = vec4u(tick.now, 0u, 0u, 0u);
+}
+
+// Sets the size of `relax` from the number of touched plants, in rows that every device allows.
+@compute @workgroup_size(1)
+fn count_groups() {
+    let groups = (atomicLoad(&touched[0]) + WORKGROUP - 1u) / WORKGROUP;
+    let rows = (groups + MOST_GROUPS - 1u) / MOST_GROUPS;
+    pass_groups[RELAX_GROUPS] = min(groups, MOST_GROUPS);
+    pass_groups[RELAX_GROUPS + 1u] = rows;
+    pass_groups[RELAX_GROUPS + 2u] = 1u;
+}

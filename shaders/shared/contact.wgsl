@@ -1,0 +1,87 @@
+// One part near a tile. Twin: src/sim/contact.rs; records: src/gpu/tick_data.rs.
+#import "shared/cube.wgsl"
+#import "shared/rigid.wgsl"
+#import "shared/solid.wgsl"
+#import "shared/tile.wgsl"
+
+struct ContactRecord {
+    // `anchor_from_part` at the start and the end of the sub-step: unit quaternions x, y, z, w.
+    from_turn: vec4f,
+    to_turn: vec4f,
+    from_place: vec3f,
+    // Radius about the part's origin that holds the part.
+    radius_m: f32,
+    to_place: vec3f,
+    // Pieces the sub-step is cut into for this body.
+    sweeps: u32,
+    // Body and part, in the upper bits of a vertex's memory of its face.
+    key: u32,
+    // 1: tested with the depth cube.
+    uses_cube: u32,
+    spare: vec2u,
+    solid: SolidRecord,
+}
+
+@group(1) @binding(2) var<storage, read> contacts: array<ContactRecord>;
+
+// The part's pose at a share of the sub-step, its turn along the shorter way.
+fn pose_at(contact: u32, share: f32) -> Pose {
+    let from_turn = contacts[contact].from_turn;
+    let to_turn = contacts[contact].to_turn;
+    let same_side = dot(from_turn, to_turn) >= 0.0;
+    let mixed = from_turn * (1.0 - share) + to_turn * select(-share, share, same_side);
+    let length = sqrt(dot(mixed, mixed));
+    var turn = from_turn;
+    if length > 1e-12 {
+        turn = mixed * (1.0 / length);
+    }
+    let place = contacts[contact].from_place * (1.0 - share) + contacts[contact].to_place * share;
+    return Pose(turn, place);
+}
+
+// True where the swept ball around the part may reach a ball around a plant's root.
+fn reaches(contact: u32, root: vec3f, reach: f32) -> bool {
+    let from_place = contacts[contact].from_place;
+    let way = contacts[contact].to_place - from_place;
+    let length_squared = dot(way, way);
+    var t = 0.0;
+    if length_squared > 1e-12 {
+        t = clamp(dot(root - from_place, way) / length_squared, 0.0, 1.0);
+    }
+    let apart = root - (from_place + way * t);
+    let distance = contacts[contact].radius_m + reach;
+    return dot(apart, apart) <= distance * distance;
+}
+
+// Sweeps a plant needs: the most of any body that may reach it; 0 if none does.
+fn sweeps_for(tile: TileRecord, root: vec3f, reach: f32) -> u32 {
+    var most = 0u;
+    for (var contact = tile.first_contact; contact < tile.end_contact; contact++) {
+        if reaches(contact, root, reach) {
+            most = max(most, contacts[contact].sweeps);
+        }
+    }
+    return most;
+}
+
+// True where a vertex is inside the part at a pose.
+fn holds(contact: u32, pose: Pose, vertex: vec3f) -> bool {
+    let p = inverse_point(pose, vertex);
+    if contacts[contact].uses_cube != 0u {
+        return cube_inside(contacts[contact].solid, p);
+    }
+    return solid_depth(contacts[contact].solid, p) > 0.0;
+}
+
+// The way out of the part at a pose for a vertex with a memory of its last face.
+fn way_out(contact: u32, pose: Pose, vertex: vec3f, memory: u32) -> Exit {
+    let p = inverse_point(pose, vertex);
+    var kept = NO_FACE;
+    if (memory & ~FACE_MASK) == contacts[contact].key && (memory & FACE_MASK) != 0u {
+        kept = (memory & FACE_MASK) - 1u;
+    }
+    if contacts[contact].uses_cube != 0u {
+        return cube_exit(contacts[contact].solid, p, kept);
+    }
+    return solid_exit(contacts[contact].solid, p, kept);
+}

@@ -1,0 +1,110 @@
+// Sampling a depth cube. Twin: src/sim/depth_cube.rs.
+#import "shared/field.wgsl"
+#import "shared/solid.wgsl"
+#import "shared/texel.wgsl"
+
+// Six faces of resolution² texels per cube: flags and depth, and the packed normal.
+@group(1) @binding(5) var<storage, read> texels: array<vec2u>;
+
+// A surface point on a face, and how far below it the point is.
+struct CubeSample {
+    // False outside the face's silhouette; then the rest means nothing.
+    hit: bool,
+    hidden: bool,
+    // Depth of the point behind the surface, along the face's axis.
+    behind: f32,
+    normal: vec3f,
+}
+
+// Masked bilinear sample of a face under a point: weights over hit texels only.
+fn cube_sample(solid: SolidRecord, p: vec3f, face: u32) -> CubeSample {
+    var sample: CubeSample;
+    let a = face >> 1u;
+    let columns_along = (a + 1u) % 3u;
+    let rows_along = (a + 2u) % 3u;
+    let size = solid.high - solid.low;
+    let inside = (p - solid.low) / size * f32(solid.resolution) - 0.5;
+    let at = vec2f(inside[columns_along], inside[rows_along]);
+    let whole = floor(at);
+    let share = at - whole;
+    let last = i32(solid.resolution) - 1;
+    let first = solid.first_texel + face * solid.resolution * solid.resolution;
+    var weight = 0.0;
+    var hidden = 0.0;
+    var depth = 0.0;
+    var normal = vec3f(0.0);
+    for (var corner = 0u; corner < 4u; corner++) {
+        let step = vec2u(corner & 1u, corner >> 1u);
+        let w = select(1.0 - share.x, share.x, step.x == 1u)
+            * select(1.0 - share.y, share.y, step.y == 1u);
+        let texel = vec2u(clamp(vec2i(whole) + vec2i(step), vec2i(0), vec2i(last)));
+        let word = texels[first + texel.y * solid.resolution + texel.x];
+        if (word.x & HIT) == 0u {
+            continue;
+        }
+        weight += w;
+        depth += w * unpack_depth(word.x);
+        normal += unpack_normal(word.y) * w;
+        if (word.x & HIDDEN) != 0u {
+            hidden += w;
+        }
+    }
+    if weight < 0.5 {
+        return sample;
+    }
+    sample.hit = true;
+    sample.hidden = hidden * 2.0 > weight;
+    let below = select(p[a] - solid.low[a], solid.high[a] - p[a], (face & 1u) == 0u);
+    sample.behind = below - depth / weight * size[a];
+    sample.normal = unit_or(normal, face_normal(face));
+    return sample;
+}
+
+fn within_bounds(solid: SolidRecord, p: vec3f) -> bool {
+    return all(p > solid.low) && all(p < solid.high);
+}
+
+// True where a point is behind all six faces.
+fn cube_inside(solid: SolidRecord, p: vec3f) -> bool {
+    if !within_bounds(solid, p) {
+        return false;
+    }
+    for (var face = 0u; face < 6u; face++) {
+        let sample = cube_sample(solid, p, face);
+        if !sample.hit || sample.behind <= 0.0 {
+            return false;
+        }
+    }
+    return true;
+}
+
+// The way out for a point inside. No way leads through a hidden surface while another is open.
+fn cube_exit(solid: SolidRecord, p: vec3f, kept: u32) -> Exit {
+    if !within_bounds(solid, p) {
+        return outside();
+    }
+    var best = outside();
+    var best_hidden = false;
+    var keep = outside();
+    for (var face = 0u; face < 6u; face++) {
+        let sample = cube_sample(solid, p, face);
+        if !sample.hit || sample.behind <= 0.0 {
+            return outside();
+        }
+        let way = sample.behind * abs(sample.normal[face >> 1u]);
+        let exit = Exit(way, sample.normal, face);
+        if face == kept && !sample.hidden {
+            keep = exit;
+        }
+        let opens = best_hidden && !sample.hidden;
+        let nearer = best_hidden == sample.hidden && way < best.depth;
+        if best.face == NO_FACE || opens || nearer {
+            best = exit;
+            best_hidden = sample.hidden;
+        }
+    }
+    if keep.face != NO_FACE && keep.depth * KEEP_FACE <= best.depth {
+        return keep;
+    }
+    return best;
+}

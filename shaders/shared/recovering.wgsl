@@ -1,0 +1,63 @@
+// The pose of now, from root to tip. Twin: src/sim/recover.rs.
+//
+// v = lengths( w(now) + t³ d₀ ), one node after the other: what follows depends on the node below
+// alone, so no list of nodes is kept.
+#import "shared/plant.wgsl"
+#import "shared/pose.wgsl"
+#import "shared/tick.wgsl"
+#import "shared/tile.wgsl"
+#import "shared/wind.wgsl"
+
+struct Walk {
+    blade: BladePlace,
+    bend: vec2f,
+    // Rest length of a segment.
+    length: f32,
+    // The share t³ of the offset that is left; 0 for the wind pose itself.
+    left: f32,
+    // True in the very tick of a contact, which leaves the pose as it is.
+    fresh: bool,
+    // The node reached, and the same node of the wind pose.
+    node: vec3f,
+    wind: vec3f,
+}
+
+// The share of the offset that is left `age` ticks after the last contact.
+fn offset_left(age: u32) -> f32 {
+    let t = max(1.0 - f32(age) * tick.step_over_t, 0.0);
+    return t * t * t;
+}
+
+// At the root of a plant touched at a tick (0: never).
+fn walk_from_root(tile: TileRecord, plant: Plant, touched_at: u32) -> Walk {
+    var walk: Walk;
+    walk.blade = blade_place(plant);
+    walk.bend = wind_bend(tile, plant);
+    walk.length = segment_length(plant);
+    if touched_at != 0u {
+        walk.left = offset_left(tick.now - touched_at);
+        walk.fresh = tick.now == touched_at;
+    }
+    walk.node = plant.root;
+    walk.wind = plant.root;
+    return walk;
+}
+
+// Goes up segment `j`, whose upper node has the given offset.
+fn walk_up(walk: ptr<function, Walk>, plant: Plant, j: u32, offset: vec3f) {
+    let below = (*walk).wind;
+    let length = (*walk).length;
+    let above = below + wind_direction(plant, (*walk).blade, (*walk).bend, j) * length;
+    (*walk).wind = above;
+    if (*walk).left <= 0.0 {
+        (*walk).node = above;
+        return;
+    }
+    let bent = above + offset * (*walk).left;
+    if (*walk).fresh {
+        (*walk).node = bent;
+        return;
+    }
+    let rest = unit_or(above - below, UP);
+    (*walk).node += unit_or(bent - (*walk).node, rest) * length;
+}

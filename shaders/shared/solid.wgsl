@@ -1,0 +1,130 @@
+// The closed form of a convex part. Twin: src/sim/solid.rs.
+#import "shared/field.wgsl"
+
+struct SolidRecord {
+    // SOLID_BALL, SOLID_BOX, SOLID_CAPSULE, SOLID_CYLINDER or SOLID_CONVEX.
+    kind: u32,
+    // Run of `planes` of a convex one.
+    first_plane: u32,
+    plane_count: u32,
+    // Texels along the edge of a face of its depth cube, and where the cube begins.
+    resolution: u32,
+    // Ball: radius. Box: half sides. Capsule, cylinder: radius, half length.
+    dims: vec3f,
+    first_texel: u32,
+    // Bounds.
+    low: vec3f,
+    spare_a: u32,
+    high: vec3f,
+    spare_b: u32,
+}
+
+// Normal and offset: points with normal·p ≤ offset are inside.
+@group(1) @binding(6) var<storage, read> planes: array<vec4f>;
+
+// The way out of a solid.
+struct Exit {
+    // Distance to the surface along the normal; 0 or less: the point is outside.
+    depth: f32,
+    normal: vec3f,
+    face: u32,
+}
+
+fn outside() -> Exit {
+    return Exit(0.0, UP, NO_FACE);
+}
+
+// Features that a way out may lead through.
+fn face_count(solid: SolidRecord) -> u32 {
+    switch solid.kind {
+        case SOLID_BOX: {
+            return 6u;
+        }
+        case SOLID_CYLINDER: {
+            return 3u;
+        }
+        case SOLID_CONVEX: {
+            return solid.plane_count;
+        }
+        default: {
+            return 1u;
+        }
+    }
+}
+
+// Outward normal of a depth cube's or box's face: 0 is +x, 1 is −x, and so on.
+fn face_normal(face: u32) -> vec3f {
+    let sign = select(-1.0, 1.0, (face & 1u) == 0u);
+    let a = face >> 1u;
+    return sign * vec3f(f32(a == 0u), f32(a == 1u), f32(a == 2u));
+}
+
+// From the nearest point of a capsule's axis to the point.
+fn from_axis(p: vec3f, half: f32) -> vec3f {
+    return vec3f(p.x, p.y - clamp(p.y, -half, half), p.z);
+}
+
+fn round_face(out: vec3f, radius: f32) -> vec4f {
+    return vec4f(unit_or(out, vec3f(1.0, 0.0, 0.0)), radius - length(out));
+}
+
+// Outward normal of a feature, and the depth of a point behind it.
+fn solid_face(solid: SolidRecord, p: vec3f, face: u32) -> vec4f {
+    let dims = solid.dims;
+    switch solid.kind {
+        case SOLID_BOX: {
+            let n = face_normal(face);
+            return vec4f(n, dot(abs(n), dims) - dot(n, p));
+        }
+        case SOLID_CYLINDER: {
+            if face == 0u {
+                return round_face(vec3f(p.x, 0.0, p.z), dims.x);
+            }
+            let up = select(-1.0, 1.0, face == 1u);
+            return vec4f(0.0, up, 0.0, dims.y - up * p.y);
+        }
+        case SOLID_CONVEX: {
+            let plane = planes[solid.first_plane + face];
+            return vec4f(plane.xyz, plane.w - dot(plane.xyz, p));
+        }
+        case SOLID_CAPSULE: {
+            return round_face(from_axis(p, dims.y), dims.x);
+        }
+        default: {
+            return round_face(p, dims.x);
+        }
+    }
+}
+
+// Depth of a point: positive inside.
+fn solid_depth(solid: SolidRecord, p: vec3f) -> f32 {
+    var least = 1e30;
+    for (var face = 0u; face < face_count(solid); face++) {
+        least = min(least, solid_face(solid, p, face).w);
+    }
+    return least;
+}
+
+// The way out for a point inside. `kept` is the feature of the last sub-step or NO_FACE; it is
+// kept until another is nearer by KEEP_FACE.
+fn solid_exit(solid: SolidRecord, p: vec3f, kept: u32) -> Exit {
+    var best = Exit(1e30, UP, NO_FACE);
+    var keep = best;
+    for (var face = 0u; face < face_count(solid); face++) {
+        let found = solid_face(solid, p, face);
+        if found.w <= 0.0 {
+            return outside();
+        }
+        let exit = Exit(found.w, found.xyz, face);
+        if found.w < best.depth {
+            best = exit;
+        }
+        if face == kept {
+            keep = exit;
+        }
+    }
+    if keep.face != NO_FACE && keep.depth * KEEP_FACE <= best.depth {
+        return keep;
+    }
+    return best;
+}

@@ -1,0 +1,22 @@
+// The list of touched plants: TOUCHED_HEADER words (their count, the most rounds any plant took,
+// two spare), then two words per plant. Host: src/gpu/grass.rs.
+@group(1) @binding(4) var<storage, read_write> touched: array<atomic<u32>>;
+
+// A plant to respond: rank of its tile's record, place in the tile, sweeps it needs.
+struct Touched {
+    tile: u32,
+    place: u32,
+    sweeps: u32,
+}
+
+fn add_touched(plant: Touched) {
+    let at = TOUCHED_HEADER + 2u * atomicAdd(&touched[0], 1u);
+    atomicStore(&touched[at], (plant.tile << 16u) | plant.place);
+    atomicStore(&touched[at + 1u], plant.sweeps);
+}
+
+fn touched_at(index: u32) -> Touched {
+    let at = TOUCHED_HEADER + 2u * index;
+    let word = atomicLoad(&touched[at]);
+    return Touched(word >> 16u, word & 0xffffu, atomicLoad(&touched[at + 1u]));
+}

@@ -1,0 +1,285 @@
+//! The grass of the `gpu` engine: state in slabs on the device, passes as compute shaders.
+//!
+//! Three lifetimes: [`GrassKernels`] (compiled passes) live as long as the process, [`GpuGrass`]
+//! as long as a scene, and the lists and numbers in its buffers for one tick. The methods that a
+//! tick calls have the names of those of [`sim::cpu::Grass`](crate::sim::cpu::Grass); they record,
+//! and [`GpuGrass::submit`] hands the tick to the device. Nothing is read back unless asked for.
+
+use super::cubes::Cubes;
+use super::field_data::TileRecord;
+use super::grass_buffers::{
+    COLLIDE_GROUPS, GrassBuffers, RECOVER_GROUPS, TOUCHED_HEADER, slab_limit,
+};
+use super::passes::collide::CollidePass;
+use super::passes::depth_cube::DepthCubePass;
+use super::passes::recover::RecoverPass;
+use super::passes::relax::RelaxPass;
+use super::passes::{Recording, WORKGROUP};
+use super::tick_data::{ContactRecord, TickUniform};
+use super::{Buffer, FieldBuffers, Gpu, GpuError, PassTimer};
+use crate::sim::Meadow;
+use crate::sim::slab::slab_bytes;
+
+/// Every pass, compiled.
+#[derive(Clone, Debug)]
+pub struct GrassKernels {
+    field: wgpu::BindGroupLayout,
+    depth_cube: DepthCubePass,
+    collide: CollidePass,
+    relax: RelaxPass,
+    recover: RecoverPass,
+}
+
+impl GrassKernels {
+    /// # Errors
+    /// A shader that the driver refuses.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self {
+            field: FieldBuffers::layout(gpu),
+            depth_cube: DepthCubePass::new(gpu)?,
+            collide: CollidePass::new(gpu)?,
+            relax: RelaxPass::new(gpu)?,
+            recover: RecoverPass::new(gpu)?,
+        })
+    }
+}
+
+/// Passes dispatched since the start.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Dispatches {
+    /// Depth cubes drawn.
+    pub depth_cubes: u64,
+    pub collide: u64,
+    pub relax: u64,
+    pub recover: u64,
+}
+
+/// State of a scene's grass on the device.
+#[derive(Debug)]
+pub struct GpuGrass {
+    pub(super) gpu: Gpu,
+    kernels: GrassKernels,
+    pub field: FieldBuffers,
+    pub(super) buffers: GrassBuffers,
+    pub cubes: Cubes,
+    /// Nodes as drawn, laid out like the state.
+    drawn: Buffer<[f32; 4]>,
+    encoder: wgpu::CommandEncoder,
+    /// Rows of a slab.
+    pub(super) slab_rows: usize,
+    /// Tiles of the current tick, and how many of them collide.
+    active: u32,
+    colliding: u32,
+    pub dispatches: Dispatches,
+    pub timer: PassTimer,
+}
+
+impl GpuGrass {
+    /// Prepares a meadow's grass. Lowers the meadow's slab limit to what the device can bind;
+    /// tiles beyond it are refused and counted by the meadow.
+    ///
+    /// # Errors
+    /// A ground or blade table larger than the device can bind.
+    pub fn new(gpu: &Gpu, kernels: &GrassKernels, meadow: &mut Meadow) -> Result<Self, GpuError> {
+        let solver = &meadow.scene.solver;
+        let bytes = slab_bytes(meadow.field.grid.plants_per_tile(), solver.segments);
+        meadow.tiles.slabs.lower_limit(slab_limit(gpu, bytes));
+        let grass = Self {
+            gpu: gpu.clone(),
+            kernels: kernels.clone(),
+            field: FieldBuffers::new(gpu, &kernels.field, &meadow.field)?,
+            buffers: GrassBuffers::new(gpu)?,
+            cubes: Cubes::new(gpu, solver.cube_resolution, f64::from(solver.skin_m))?,
+            drawn: Buffer::new(gpu, "drawn nodes", 0, wgpu::BufferUsages::STORAGE)?,
+            encoder: new_encoder(gpu),
+            slab_rows: bytes as usize / size_of::<[u32; 4]>(),
+            active: 0,
+            colliding: 0,
+            dispatches: Dispatches::default(),
+            timer: PassTimer::new(gpu, 8),
+        };
+        grass.field.set_wind(gpu, &meadow.work.wind)?;
+        Ok(grass)
+    }
+
+    /// Takes in the tick's tiles, and gives woken ones a wiped slab.
+    ///
+    /// # Errors
+    /// The driver's, as when memory is short.
+    pub fn assign_slabs(&mut self, meadow: &Meadow) -> Result<(), GpuError> {
+        self.take_in(meadow)?;
+        let slab = (self.slab_rows * size_of::<[u32; 4]>()) as u64;
+        for &(_, woken) in &meadow.changes.woken {
+            let first = u64::from(woken) * slab;
+            let state = &self.buffers.state.raw;
+            self.encoder.clear_buffer(state, first, Some(slab));
+        }
+        Ok(())
+    }
+
+    /// Draws the depth cubes that are wanted for the first time.
+    ///
+    /// # Errors
+    /// More cubes than the device can bind.
+    pub fn draw_depth_cubes(&mut self, meadow: &Meadow) -> Result<(), GpuError> {
+        let mut recording = Recording {
+            encoder: &mut self.encoder,
+            timer: &mut self.timer,
+            field: &self.field,
+        };
+        let pass = &self.kernels.depth_cube;
+        let drawn = self
+            .cubes
+            .draw(&self.gpu, pass, &mut recording, &meadow.parts)?;
+        self.dispatches.depth_cubes += u64::from(drawn);
+        Ok(())
+    }
+
+    /// Lists the plants that a body touches. Nothing is dispatched where no tile collides.
+    ///
+    /// # Errors
+    /// More contacts than the device can bind.
+    pub fn collide(&mut self, meadow: &Meadow) -> Result<(), GpuError> {
+        if self.colliding == 0 {
+            return Ok(());
+        }
+        let contacts: Vec<ContactRecord> = meadow
+            .work
+            .contacts
+            .iter()
+            .map(|contact| ContactRecord::new(contact, self.cubes.solid(contact.part)))
+            .collect();
+        self.buffers.contacts.write_or_grow(&self.gpu, &contacts)?;
+        let mut recording = Recording {
+            encoder: &mut self.encoder,
+            timer: &mut self.timer,
+            field: &self.field,
+        };
+        self.kernels.collide.record(
+            &self.gpu,
+            &mut recording,
+            &self.buffers,
+            &self.cubes.buffers,
+        );
+        self.dispatches.collide += 1;
+        Ok(())
+    }
+
+    /// Pushes the touched plants out, restores their shape and stores their offsets.
+    pub fn relax(&mut self) {
+        if self.colliding == 0 {
+            return;
+        }
+        let mut recording = Recording {
+            encoder: &mut self.encoder,
+            timer: &mut self.timer,
+            field: &self.field,
+        };
+        self.kernels.relax.record(
+            &self.gpu,
+            &mut recording,
+            &self.buffers,
+            &self.cubes.buffers,
+        );
+        self.dispatches.relax += 1;
+    }
+
+    /// Hands what was recorded to the device.
+    pub fn submit(&mut self) {
+        let mut encoder = std::mem::replace(&mut self.encoder, new_encoder(&self.gpu));
+        self.timer.finish_frame(&mut encoder);
+        self.gpu.queue.submit([encoder.finish()]);
+        self.timer.collect(&self.gpu);
+    }
+
+    /// Writes the nodes of active tiles' plants as they stand after the last tick; once per
+    /// displayed frame.
+    ///
+    /// # Errors
+    /// The driver's, as when memory is short.
+    pub fn recover(&mut self) -> Result<(), GpuError> {
+        if self.active == 0 {
+            return Ok(());
+        }
+        self.drawn.grow_to(&self.gpu, self.buffers.state.len())?;
+        let mut recording = Recording {
+            encoder: &mut self.encoder,
+            timer: &mut self.timer,
+            field: &self.field,
+        };
+        self.kernels
+            .recover
+            .record(&self.gpu, &mut recording, &self.buffers, &self.drawn);
+        self.dispatches.recover += 1;
+        self.submit();
+        Ok(())
+    }
+
+    /// Nodes of active tiles as drawn: a slab is `plants_per_tile · (segments + 1)` rows, per plant
+    /// its root first, with w = 0 where nothing grows. Replaced when it grows, in `recover`.
+    pub fn drawn(&self) -> &Buffer<[f32; 4]> {
+        &self.drawn
+    }
+
+    /// Records of the active tiles, colliding ones first, and how many there are. Replaced when it
+    /// grows, in `assign_slabs` and `upload`.
+    pub fn tiles(&self) -> (&Buffer<TileRecord>, u32) {
+        (&self.buffers.tiles, self.active)
+    }
+
+    /// Makes room for the meadow's slabs and sets the numbers, tiles and wind of its current tick.
+    pub(super) fn take_in(&mut self, meadow: &Meadow) -> Result<(), GpuError> {
+        let (gpu, buffers) = (&self.gpu, &mut self.buffers);
+        let slabs = meadow.tiles.slabs.high_water() as usize;
+        grow_doubling(gpu, &mut buffers.state, slabs, meadow, self.slab_rows)?;
+
+        let grid = &meadow.field.grid;
+        let all = || meadow.work.tiles.iter();
+        let collides = |tile: &&crate::sim::work::TileWork| !tile.contacts.is_empty();
+        let tiles: Vec<TileRecord> = all()
+            .filter(collides)
+            .chain(all().filter(|tile| !collides(tile)))
+            .map(|tile| TileRecord::active(grid, tile))
+            .collect();
+        self.active = tiles.len() as u32;
+        self.colliding = all().filter(collides).count() as u32;
+
+        let tick = TickUniform::new(meadow, self.colliding);
+        buffers.tick.write(gpu, 0, &[tick])?;
+        buffers.tiles.write_or_grow(gpu, &tiles)?;
+        self.field.set_wind(gpu, &meadow.work.wind)?;
+        let plants = grid.plants_per_tile();
+        let listed = TOUCHED_HEADER as usize + 2 * self.colliding as usize * plants as usize;
+        buffers.touched.grow_to(gpu, listed)?;
+        let groups = |tiles| [plants.div_ceil(WORKGROUP), tiles, 1];
+        let [collide, recover] = [groups(self.colliding), groups(self.active)];
+        buffers
+            .groups
+            .write(gpu, COLLIDE_GROUPS as usize, &collide)?;
+        buffers.groups.write(gpu, RECOVER_GROUPS as usize, &recover)
+    }
+}
+
+/// Makes room for `slabs` slabs, doubling up to the meadow's limit.
+fn grow_doubling(
+    gpu: &Gpu,
+    state: &mut Buffer<[u32; 4]>,
+    slabs: usize,
+    meadow: &Meadow,
+    slab_rows: usize,
+) -> Result<(), GpuError> {
+    if slabs * slab_rows > state.len() {
+        let doubled = slabs
+            .next_power_of_two()
+            .min(meadow.tiles.slabs.limit() as usize);
+        state.grow_to(gpu, doubled.max(slabs) * slab_rows)?;
+    }
+    Ok(())
+}
+
+fn new_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
+    gpu.device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("grass"),
+        })
+}

@@ -1,0 +1,156 @@
+//! The grass's state between device and memory: read back for measures and tests, uploaded to show
+//! or continue what another engine simulated.
+
+use super::grass::GpuGrass;
+use super::grass_buffers::TOUCHED_HEADER;
+use super::{Buffer, GpuError};
+use crate::base::Vec3;
+use crate::sim::Meadow;
+use crate::sim::measure::GrassState;
+use crate::sim::slab::Slab;
+
+/// The state of a meadow's active tiles, read back.
+#[derive(Clone, Debug, Default)]
+pub struct GpuState {
+    slabs: Vec<Option<Slab<f32>>>,
+}
+
+impl GrassState<f32> for GpuState {
+    fn slab(&self, slab: u32) -> Option<&Slab<f32>> {
+        self.slabs.get(slab as usize)?.as_ref()
+    }
+}
+
+/// What the passes counted.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Counts {
+    /// Plants that were touched in the last tick in which a tile collided.
+    pub touched: u32,
+    /// Most rounds any plant took since the start.
+    pub rounds_peak: u32,
+}
+
+impl GpuGrass {
+    /// Reads the slabs of the meadow's active tiles. Waits for the device.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn read_state(&self, meadow: &Meadow) -> Result<GpuState, GpuError> {
+        let slabs: Vec<u32> = meadow.work.tiles.iter().map(|tile| tile.slab).collect();
+        let rows = read_slabs(self, &self.buffers.state, &slabs)?;
+        let plants = meadow.field.grid.plants_per_tile() as usize;
+        let segments = meadow.scene.solver.segments as usize;
+        let mut state = GpuState::default();
+        for (&slab, rows) in slabs.iter().zip(rows.chunks_exact(self.slab_rows.max(1))) {
+            let place = slab as usize;
+            if state.slabs.len() <= place {
+                state.slabs.resize(place + 1, None);
+            }
+            state.slabs[place] = Some(unpack(rows, plants, segments));
+        }
+        Ok(state)
+    }
+
+    /// Reads the drawn nodes of the meadow's active tiles, tile after tile. Waits for the device.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn read_drawn(&self, meadow: &Meadow) -> Result<Vec<[f32; 4]>, GpuError> {
+        let slabs: Vec<u32> = meadow.work.tiles.iter().map(|tile| tile.slab).collect();
+        read_slabs(self, self.drawn(), &slabs)
+    }
+
+    /// Reads the passes' counts. Waits for the device.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn read_counts(&self) -> Result<Counts, GpuError> {
+        let header = self
+            .buffers
+            .touched
+            .read(&self.gpu, TOUCHED_HEADER as usize)?;
+        Ok(Counts {
+            touched: header.first().copied().unwrap_or(0),
+            rounds_peak: header.get(1).copied().unwrap_or(0),
+        })
+    }
+
+    /// Takes over the state of another engine that simulates the same meadow, together with the
+    /// numbers of its current tick, so that `recover` or the next tick goes on from there.
+    ///
+    /// # Errors
+    /// The driver's, as when memory is short.
+    pub fn upload(
+        &mut self,
+        meadow: &Meadow,
+        state: &impl GrassState<f32>,
+    ) -> Result<(), GpuError> {
+        self.take_in(meadow)?;
+        let segments = meadow.scene.solver.segments as usize;
+        for tile in &meadow.work.tiles {
+            if let Some(slab) = state.slab(tile.slab) {
+                let first = tile.slab as usize * self.slab_rows;
+                self.buffers
+                    .state
+                    .write(&self.gpu, first, &pack(slab, segments))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Rows of a slab on the device.
+fn pack(slab: &Slab<f32>, segments: usize) -> Vec<[u32; 4]> {
+    let mut rows = Vec::with_capacity(slab.touched_at.len() * (segments + 1));
+    for (plant, &touched_at) in slab.touched_at.iter().enumerate() {
+        rows.push([touched_at, 0, 0, 0]);
+        let nodes = plant * segments..(plant + 1) * segments;
+        for (offset, face) in slab.offsets[nodes.clone()].iter().zip(&slab.faces[nodes]) {
+            let [x, y, z] = offset.to_f32().map(f32::to_bits);
+            rows.push([x, y, z, *face]);
+        }
+    }
+    rows
+}
+
+fn unpack(rows: &[[u32; 4]], plants: usize, segments: usize) -> Slab<f32> {
+    let mut slab = Slab::new(plants, segments);
+    for (plant, rows) in rows.chunks_exact(segments + 1).enumerate() {
+        slab.touched_at[plant] = rows[0][0];
+        for (j, &[x, y, z, face]) in rows[1..].iter().enumerate() {
+            let at = plant * segments + j;
+            slab.offsets[at] = Vec3::of_f32([x, y, z].map(f32::from_bits));
+            slab.faces[at] = face;
+        }
+    }
+    slab
+}
+
+/// Copies slabs out of a buffer, one after the other.
+fn read_slabs<T: bytemuck::Pod>(
+    grass: &GpuGrass,
+    from: &Buffer<T>,
+    slabs: &[u32],
+) -> Result<Vec<T>, GpuError> {
+    let runs: Vec<std::ops::Range<usize>> = slabs
+        .iter()
+        .map(|&slab| slab as usize * grass.slab_rows..(slab as usize + 1) * grass.slab_rows)
+        .collect();
+    from.read_runs(&grass.gpu, &runs)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slab_survives_packing() {
+        let mut slab = Slab::<f32>::new(3, 2);
+        slab.touched_at = vec![0, 7, 9];
+        for (n, offset) in slab.offsets.iter_mut().enumerate() {
+            *offset = Vec3::new(n as f32, -0.5, 1e-7);
+        }
+        slab.faces = vec![1, 2, 3, 4, 5, u32::MAX];
+        assert_eq!(unpack(&pack(&slab, 2), 3, 2), slab);
+    }
+}

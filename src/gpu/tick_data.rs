@@ -1,0 +1,159 @@
+//! The work of one sub-step as the shaders see it. Twins: `shaders/shared/tick.wgsl`,
+//! `contact.wgsl`, `solid.wgsl`, and `shaders/depth_cube.wgsl` for parts and jobs.
+
+use crate::base::{Pose, Vec3};
+use crate::gpu_struct;
+use crate::scene::Solver;
+use crate::sim::contact::memory_key;
+use crate::sim::meadow::Meadow;
+use crate::sim::relax::RelaxSettings;
+use crate::sim::solid::Solid;
+use crate::sim::work::Contact;
+
+pub const SOLID_BALL: u32 = 0;
+pub const SOLID_BOX: u32 = 1;
+pub const SOLID_CAPSULE: u32 = 2;
+pub const SOLID_CYLINDER: u32 = 3;
+pub const SOLID_CONVEX: u32 = 4;
+
+gpu_struct! {
+    /// Numbers of one sub-step.
+    pub struct TickUniform {
+        pub now: u32,
+        pub tiles: u32,
+        pub colliding: u32,
+        pub fewest_rounds: u32,
+        pub most_rounds: u32,
+        pub step_over_t: f32,
+        pub bend: f32,
+        pub strain_limit: f32,
+    }
+}
+
+gpu_struct! {
+    /// The closed form of a convex part, and where its depth cube lies.
+    pub struct SolidRecord {
+        pub kind: u32,
+        pub first_plane: u32,
+        pub plane_count: u32,
+        pub resolution: u32,
+        pub dims: [f32; 3],
+        pub first_texel: u32,
+        pub low: [f32; 3],
+        pub spare_a: u32,
+        pub high: [f32; 3],
+        pub spare_b: u32,
+    }
+}
+
+gpu_struct! {
+    /// One part near a tile.
+    pub struct ContactRecord {
+        pub from_turn: [f32; 4],
+        pub to_turn: [f32; 4],
+        pub from_place: [f32; 3],
+        pub radius_m: f32,
+        pub to_place: [f32; 3],
+        pub sweeps: u32,
+        pub key: u32,
+        pub uses_cube: u32,
+        pub spare: [u32; 2],
+        pub solid: SolidRecord,
+    }
+}
+
+gpu_struct! {
+    /// One convex part, for drawing its depth cube.
+    pub struct PartRecord {
+        pub turn: [f32; 4],
+        pub place: [f32; 3],
+        pub first_sibling: u32,
+        pub end_sibling: u32,
+        pub spare_a: u32,
+        pub spare_b: [u32; 2],
+        pub solid: SolidRecord,
+    }
+}
+
+gpu_struct! {
+    /// A depth cube to draw.
+    pub struct CubeJob {
+        pub part: u32,
+        pub cover_m: f32,
+    }
+}
+
+impl TickUniform {
+    /// Numbers of the meadow's current sub-step, of which `colliding` tiles collide.
+    pub fn new(meadow: &Meadow, colliding: u32) -> Self {
+        let solver: &Solver = &meadow.scene.solver;
+        let settings = RelaxSettings::<f32>::new(solver);
+        Self {
+            now: meadow.work.now,
+            tiles: meadow.work.tiles.len() as u32,
+            colliding,
+            fewest_rounds: settings.fewest_rounds,
+            most_rounds: settings.most_rounds,
+            step_over_t: meadow.step_over_t() as f32,
+            bend: settings.bend,
+            strain_limit: settings.strain_limit,
+        }
+    }
+}
+
+impl SolidRecord {
+    /// A solid without a depth cube. A convex one adds its planes to `planes`.
+    pub fn new(solid: &Solid<f32>, planes: &mut Vec<[f32; 4]>) -> Self {
+        let first_plane = planes.len() as u32;
+        let (kind, dims) = match solid {
+            Solid::Ball { radius } => (SOLID_BALL, [*radius, 0.0, 0.0]),
+            Solid::Box { half } => (SOLID_BOX, half.to_f32()),
+            Solid::Capsule { radius, half } => (SOLID_CAPSULE, [*radius, *half, 0.0]),
+            Solid::Cylinder { radius, half } => (SOLID_CYLINDER, [*radius, *half, 0.0]),
+            Solid::Convex { planes: own, .. } => {
+                planes.extend(own.iter().map(|plane| {
+                    let [x, y, z] = plane.normal.to_f32();
+                    [x, y, z, plane.offset]
+                }));
+                (SOLID_CONVEX, [0.0; 3])
+            }
+        };
+        let [low, high] = solid.bounds().map(Vec3::to_f32);
+        Self {
+            kind,
+            first_plane,
+            plane_count: planes.len() as u32 - first_plane,
+            resolution: 0,
+            dims,
+            first_texel: 0,
+            low,
+            spare_a: 0,
+            high,
+            spare_b: 0,
+        }
+    }
+
+    pub fn has_cube(&self) -> bool {
+        self.resolution > 0
+    }
+}
+
+impl ContactRecord {
+    /// A contact with the part's solid. A part whose cube is not drawn is tested by its closed
+    /// form.
+    pub fn new(contact: &Contact, solid: &SolidRecord) -> Self {
+        let (from, to): (Pose<f32>, Pose<f32>) = (contact.from.cast(), contact.to.cast());
+        Self {
+            from_turn: from.turn.to_array(),
+            to_turn: to.turn.to_array(),
+            from_place: from.place.to_f32(),
+            radius_m: contact.radius_m as f32,
+            to_place: to.place.to_f32(),
+            sweeps: contact.sweeps,
+            key: memory_key(contact),
+            uses_cube: u32::from(contact.uses_cube && solid.has_cube()),
+            spare: [0; 2],
+            solid: *solid,
+        }
+    }
+}
