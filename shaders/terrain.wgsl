@@ -19,6 +19,8 @@ struct Ground {
     cover: f32, // share of the ground that plants hide, 0 to 1
     mean_rgb: vec3f, // of the base colours, for the land far away
     pad: f32,
+    map_m: vec2f, // extent of the base-colour map
+    pad_b: vec2f,
 }
 
 struct Chunk {
@@ -201,7 +203,7 @@ fn ground_fragment(in: GroundPoint) -> @location(0) vec4f {
     let facing_eye = max(dot(to_eye, normalize(in.normal)), 0.08);
     // The longer side of a pixel's footprint, tamed at grazing angles.
     let pixel_m = distance * frame.pixel_rad / sqrt(facing_eye);
-    let uv = in.place_in_field / ground.size_m;
+    let uv = in.place_in_field / ground.map_m;
     let map_rgb = textureSampleLevel(base_colour, base_sampler, uv, 0.0).rgb;
     // Mirror images of the field would show from a hill: the land turns to its mean colour.
     let base = mix(map_rgb, ground.mean_rgb, smoothstep(10.0, 90.0, in.beyond_m));
