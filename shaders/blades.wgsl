@@ -26,7 +26,7 @@ struct BladeLook {
 // Tiles drawn with one number of segments.
 struct Band {
     first_tile: u32,
-    plants: u32, // instances per tile
+    blades: u32, // instances per tile
     stride: u32, // nodes per drawn segment
     steps: u32, // drawn segments
 }
@@ -34,7 +34,7 @@ struct Band {
 struct DrawnTile {
     tile: TileRecord,
     anchor_from_eye: vec3f,
-    plants: f32, // how many of the tile's sequence are drawn; the last of them are still growing
+    blades: f32, // how many of the tile's sequence are drawn; the last of them are still growing
     widen: f32, // what the drawn blades' width makes up for those left out
     spare_a: f32,
     spare_b: vec2f,
@@ -50,11 +50,9 @@ struct DrawnTile {
 
 struct BladePoint {
     @builtin(position) clip: vec4f,
-    @location(0) position_from_eye: vec3f,
-    @location(1) normal: vec3f,
-    @location(2) albedo: vec3f,
-    // Along the blade (0 root, 1 tip), across it (-1 to 1), share of the sun, opacity.
-    @location(3) light: vec4f,
+    // At the middle of the covered samples: outside a blade, colours run to any value.
+    @location(0) @interpolate(perspective, centroid) radiance: vec3f,
+    @location(1) @interpolate(perspective, centroid) opacity: f32,
 }
 
 // Half the least width of a drawn blade, in pixels.
@@ -92,6 +90,32 @@ fn pose_node(tile: TileRecord, plant: Plant, place: u32, node: u32) -> PoseNode 
     return PoseNode(at, unit_or(active_node(tile.slab, place, upper) - lower, UP));
 }
 
+// A blade of a plant's tuft: 0 is the simulated one, the others stand by it.
+struct Companion {
+    shift: vec3f, // of the root, in metres
+    turn: vec2f, // cosine and sine of its turn about the plant's root
+    size: f32,
+}
+
+fn companion(tile: TileRecord, plant: Plant, index: u32) -> Companion {
+    if index == 0u {
+        return Companion(vec3f(0.0), vec2f(1.0, 0.0), 1.0);
+    }
+    var random = plant.shade ^ (index * PHILOX_WEYL);
+    let direction = unit(pcg_next(&random));
+    let away_m = TUFT_RADIUS_M * sqrt(unit(pcg_next(&random)));
+    let turn = (unit(pcg_next(&random)) - 0.5) * TUFT_TURNS;
+    let size = 0.5 + 0.45 * unit(pcg_next(&random));
+    let xz = away_m * vec2f(cos_turns(direction), sin_turns(direction));
+    let place = plant.root.xz + xz;
+    let rise = ground_in_anchor(tile, place.x, place.y) - plant.root.y;
+    return Companion(vec3f(xz.x, rise, xz.y), vec2f(cos_turns(turn), sin_turns(turn)), size);
+}
+
+fn turned_level(v: vec3f, turn: vec2f) -> vec3f {
+    return vec3f(v.x * turn.x - v.z * turn.y, v.y, v.x * turn.y + v.z * turn.x);
+}
+
 // Colour of a plant: that of the ground under it, varied by patch and by plant.
 fn plant_rgb(tile: TileRecord, plant: Plant) -> vec3f {
     let corner = vec2f(tile.anchor * ANCHOR_CELLS) * field.cell_m;
@@ -106,9 +130,7 @@ fn plant_rgb(tile: TileRecord, plant: Plant) -> vec3f {
 }
 
 fn nowhere() -> BladePoint {
-    var point: BladePoint;
-    point.clip = vec4f(0.0, 0.0, -1.0, 1.0);
-    return point;
+    return BladePoint(vec4f(0.0, 0.0, -1.0, 1.0), vec3f(0.0), 0.0);
 }
 
 // `vertex` counts 64 for every band, then pairs up the blade and the tip; `instance` counts the
@@ -120,20 +142,22 @@ fn blade_vertex(
 ) -> BladePoint {
     let band = bands[vertex / 64u];
     let corner = vertex % 64u;
-    let place = instance % band.plants;
-    let drawn = drawn_tiles[band.first_tile + instance / band.plants];
-    let rank = f32(place);
-    if rank >= drawn.plants {
+    let rank = instance % band.blades;
+    let drawn = drawn_tiles[band.first_tile + instance / band.blades];
+    if f32(rank) >= drawn.blades {
         return nowhere();
     }
+    // First one blade of every plant, then their companions.
+    let place = rank % field.plants_per_tile;
     let plant = plant_at(drawn.tile, place);
     if !plant.grows {
         return nowhere();
     }
-    let root_from_eye = drawn.anchor_from_eye + plant.root;
+    let blade = companion(drawn.tile, plant, rank / field.plants_per_tile);
+    let root_from_eye = drawn.anchor_from_eye + plant.root + blade.shift;
     let distance = length(root_from_eye);
     // Plants at the end of the prefix, and those at the end of sight, are small: nothing pops.
-    let youngest = saturate((drawn.plants - rank) / max(0.2 * drawn.plants, 1.0));
+    let youngest = saturate((drawn.blades - f32(rank)) / max(0.2 * drawn.blades, 1.0));
     let grown = youngest * (1.0 - smoothstep(0.75, 1.0, distance / blade_look.reach_m));
     if grown < 0.02 {
         return nowhere();
@@ -143,22 +167,25 @@ fn blade_vertex(
     let node = min(step * band.stride, field.segments);
     let pose = pose_node(drawn.tile, plant, place, node);
     let along = f32(node) * field.segment_share;
-    let centre = root_from_eye + (pose.place - plant.root) * grown;
+    let reached = turned_level(pose.place - plant.root, blade.turn);
+    let centre = root_from_eye + reached * (grown * blade.size);
+    let direction = turned_level(pose.direction, blade.turn);
+    let azimuth = turned_level(vec3f(plant.azimuth.x, 0.0, plant.azimuth.y), blade.turn);
 
     // The strip's cross direction: level, then rolled about the blade, more towards the tip.
     let level = unit_or(
-        cross(pose.direction, vec3f(plant.azimuth.x, 0.0, plant.azimuth.y)),
-        vec3f(-plant.azimuth.y, 0.0, plant.azimuth.x),
+        cross(direction, azimuth),
+        vec3f(-azimuth.z, 0.0, azimuth.x),
     );
     let roll = (shade_byte(plant, 2u) - 0.5) * 1.6 + (shade_byte(plant, 3u) - 0.5) * 1.4 * along;
-    let up = cross(level, pose.direction);
+    let up = cross(level, direction);
     let across = level * cos(roll) + up * sin(roll);
-    let normal = cross(pose.direction, across);
+    let normal = cross(direction, across);
 
     let sight = centre / max(length(centre), 1e-6);
     let seen = across - sight * dot(across, sight);
     let seen_share = length(seen);
-    let half_m = 0.5 * plant.width_m * drawn.widen;
+    let half_m = 0.5 * plant.width_m * drawn.widen * mix(0.6, 1.0, blade.size);
     let pixel_m = distance * frame.pixel_rad;
     // The whole blade is widened by one factor, from its mean width as seen.
     let seen_half_px = 0.7 * half_m * max(seen_share, 0.05) / pixel_m;
@@ -169,15 +196,12 @@ fn blade_vertex(
     let edge = spread * (side * half_m * widened * taper(along) * sqrt(grown));
     let position = centre + edge;
 
-    var point: BladePoint;
-    point.clip = frame.clip_from_eye * vec4f(position, 1.0);
-    point.position_from_eye = position;
     // A blade is bent across, along its midrib.
-    point.normal = normalize(normal + across * (0.45 * side));
-    point.albedo = plant_rgb(drawn.tile, plant);
-    let reaches = sun_reaches_cheaply(centre + UP * 0.01);
-    point.light = vec4f(along, side, reaches, 1.0 / widened);
-    return point;
+    let bent_normal = normalize(normal + across * (0.45 * side));
+    let rgb = plant_rgb(drawn.tile, plant);
+    let radiance = blade_radiance(rgb, bent_normal, along, position);
+    let clip = frame.clip_from_eye * vec4f(position, 1.0);
+    return BladePoint(clip, through_air(radiance, position), 1.0 / widened);
 }
 
 // Eq. 13: light that comes through the blade, a slab of unit thickness.
@@ -188,40 +212,34 @@ fn transmitted(towards_sun: f32, thickness: f32) -> f32 {
     return -towards_sun * exp(thickness / towards_sun);
 }
 
-@fragment
-fn blade_fragment(in: BladePoint) -> @location(0) vec4f {
-    let along = in.light.x;
-    let to_eye = -normalize(in.position_from_eye);
-    var normal = normalize(in.normal);
-    if dot(normal, to_eye) < 0.0 {
-        normal = -normal;
-    }
+// Eq. 14, per vertex: a blade is a few pixels wide.
+fn blade_radiance(rgb: vec3f, side_normal: vec3f, along: f32, position: vec3f) -> vec3f {
+    let to_eye = -normalize(position);
+    let normal = select(side_normal, -side_normal, dot(side_normal, to_eye) < 0.0);
     let sun = frame.sun_direction;
-    let pixel = vec2i(in.clip.xy);
-    let lot = lattice(pixel);
-    if blade_look.samples == 1u && in.light.w < lot {
-        discard;
-    }
-
     // Reeves and Blau: neighbours leave less light further down.
     let depth = blade_look.cover * (1.0 - along) * (1.0 - along);
     let sky_open = 1.0 - 0.75 * depth;
-    let sun_open = exp(-2.2 * depth);
-    // The ground's colour at the root, a paler tip, and a lighter midrib.
-    let midrib = 1.0 + 0.12 * (1.0 - smoothstep(0.0, 0.35, abs(in.light.y)));
-    let surface = in.albedo * mix(0.75, 1.12, along) * midrib;
-
-    // Eq. 14. The diffuse normal leans towards the sky: a single strip stands for a curved blade.
+    let sun_open = exp(-2.2 * depth) * sun_reaches_cheaply(position + UP * 0.01);
+    // The ground's colour at the root, a paler tip.
+    let surface = rgb * mix(0.65, 1.2, along);
+    // The diffuse normal leans towards the sky: a single strip stands for a curved blade.
     let facing = dot(normal, sun);
     let soft = max(dot(normalize(normal + UP * 0.35), sun), 0.0);
-    let through = transmitted(facing, 0.45) * 1.5;
+    let through = transmitted(facing, 0.4) * 2.0;
     let mirrored = reflect(-sun, normal);
     let glint = pow(max(dot(to_eye, mirrored), 0.0), 18.0) * 0.10 * step(0.0, facing);
     let direct = surface * soft + surface * vec3f(1.25, 1.15, 0.45) * through + vec3f(glint);
-    let radiance = frame.sun_rgb * (in.light.z * sun_open) * direct
+    return frame.sun_rgb * sun_open * direct
         + ambient_light(normalize(normal + UP * 0.5)) * sky_open * surface;
+}
 
+@fragment
+fn blade_fragment(in: BladePoint) -> @location(0) vec4f {
+    let lot = lattice(vec2i(in.clip.xy));
+    if blade_look.samples == 1u && in.opacity < lot {
+        discard;
+    }
     // Coverage has four steps; a lot per pixel makes up for what lies between.
-    let opacity = saturate(in.light.w + (lot - 0.5) * 0.25);
-    return vec4f(through_air(radiance, in.position_from_eye), opacity);
+    return vec4f(in.radiance, saturate(in.opacity + (lot - 0.5) * 0.25));
 }

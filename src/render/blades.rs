@@ -26,6 +26,9 @@ pub struct BladeDetail {
     pub full_m: f32,
     /// Distance at which the last blades end and the ground takes over their look, in metres.
     pub reach_m: f32,
+    /// Blades drawn per plant near by, at least 1: the simulated one and companions that move
+    /// with it.
+    pub tuft: u32,
 }
 
 impl Default for BladeDetail {
@@ -33,6 +36,7 @@ impl Default for BladeDetail {
         Self {
             full_m: 12.0,
             reach_m: 110.0,
+            tuft: 4,
         }
     }
 }
@@ -41,12 +45,13 @@ impl BladeDetail {
     /// For a rasteriser on the processor, which pays about 1 µs per triangle.
     pub fn software() -> Self {
         Self {
-            full_m: 6.0,
-            reach_m: 55.0,
+            full_m: 4.0,
+            reach_m: 50.0,
+            tuft: 3,
         }
     }
 
-    /// Share of a tile's plants that is drawn at a distance: all of them near by, then falling
+    /// Share of a tile's blades that is drawn at a distance: all of them near by, then falling
     /// so that every ring of equal width holds fewer blades than the one before it.
     fn share(self, distance_m: f64) -> f64 {
         (f64::from(self.full_m) / distance_m.max(1e-3))
@@ -80,7 +85,8 @@ impl Canopy {
             .sum::<f32>()
             / kinds.len() as f32;
         let cell_m2 = field.grid.cell_m * field.grid.cell_m;
-        let per_m2 = 2.0 * field.grid.plants_per_triangle() as f32 / cell_m2;
+        // Companions are thinner and shorter: two of them hide about as much as a plant.
+        let per_m2 = 2.0 * field.grid.plants_per_triangle() as f32 / cell_m2 * 2.0;
         Self {
             height_m: field.reach_m,
             // Beer's law for leaves that stand at random angles.
@@ -103,7 +109,7 @@ gpu_struct! {
 gpu_struct! {
     pub(super) struct Band {
         first_tile: u32,
-        plants: u32,
+        blades: u32,
         stride: u32,
         steps: u32,
     }
@@ -113,7 +119,7 @@ gpu_struct! {
     pub(super) struct DrawnTile {
         tile: TileRecord,
         anchor_from_eye: [f32; 3],
-        plants: f32,
+        blades: f32,
         widen: f32,
         spare_a: f32,
         spare_b: [f32; 2],
@@ -124,6 +130,10 @@ gpu_struct! {
 const BAND_VERTICES: u32 = 64;
 /// Distance of a band's end over that of its start.
 const BAND_RATIO: f64 = std::f64::consts::SQRT_2;
+/// Companions stand at most this far from their plant's root, in metres.
+pub(super) const TUFT_RADIUS_M: f32 = 0.045;
+/// Range of a companion's turn about its plant's root, in turns.
+pub(super) const TUFT_TURNS: f32 = 0.16;
 /// Share of the lost cover that the remaining blades make up for by their width; the ground's
 /// own look supplies the rest.
 const WIDEN_POWER: f64 = 0.75;
@@ -145,7 +155,7 @@ pub struct BladesInput<'a> {
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct BladeCounts {
     pub tiles: u64,
-    pub plants: u64,
+    pub blades: u64,
     pub triangles: u64,
 }
 
@@ -278,13 +288,13 @@ impl BladesLayer {
             let first = bands.len() as u32 * BAND_VERTICES;
             self.draws.push((
                 first..first + 2 * band.steps + 1,
-                0..run.len() as u32 * band.plants,
+                0..run.len() as u32 * band.blades,
             ));
             for sight in run {
                 let drawn = drawn_tile(input, view, sight);
-                let plants = u64::from(drawn.plants as u32).min(u64::from(band.plants));
-                self.counts.plants += plants;
-                self.counts.triangles += plants * u64::from(2 * band.steps - 1);
+                let blades = u64::from(drawn.blades as u32).min(u64::from(band.blades));
+                self.counts.blades += blades;
+                self.counts.triangles += blades * u64::from(2 * band.steps - 1);
                 tiles.push(drawn);
             }
             bands.push(band);
@@ -396,7 +406,7 @@ fn band_start_m(detail: BladeDetail, band: u32) -> f64 {
 
 fn band_of(input: &BladesInput<'_>, band: u32, first_tile: u32) -> Band {
     let start = band_start_m(input.detail, band);
-    let all = f64::from(input.field.grid.plants_per_tile());
+    let all = blades_per_tile(input);
     let segments = input.field.table.segments;
     // P15 eq. 4 with a reference distance: half the segments for every 1.4 times the distance.
     let stride = match band {
@@ -408,10 +418,14 @@ fn band_of(input: &BladesInput<'_>, band: u32, first_tile: u32) -> Band {
     .min(segments);
     Band {
         first_tile,
-        plants: (all * input.detail.share(start)).ceil().max(1.0) as u32,
+        blades: (all * input.detail.share(start)).ceil().max(1.0) as u32,
         stride,
         steps: segments.div_ceil(stride),
     }
+}
+
+fn blades_per_tile(input: &BladesInput<'_>) -> f64 {
+    f64::from(input.field.grid.plants_per_tile()) * f64::from(input.detail.tuft.max(1))
 }
 
 fn drawn_tile(input: &BladesInput<'_>, view: &View, sight: &Sight) -> DrawnTile {
@@ -429,7 +443,7 @@ fn drawn_tile(input: &BladesInput<'_>, view: &View, sight: &Sight) -> DrawnTile 
     DrawnTile {
         tile: record,
         anchor_from_eye: view.from_eye(origin),
-        plants: (f64::from(grid.plants_per_tile()) * share) as f32,
+        blades: (blades_per_tile(input) * share) as f32,
         widen: share.powf(-WIDEN_POWER) as f32,
         spare_a: 0.0,
         spare_b: [0.0; 2],

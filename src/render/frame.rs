@@ -175,8 +175,8 @@ impl Renderer {
         let light = input.sun.daylight();
         let casters = self.bodies.write(gpu, input.view, input.bodies)?;
         let fit = ShadowFit::new(&light, input.view, &casters);
-        let reach_m = input.blades.map_or(0.0, |blades| blades.detail.reach_m);
-        let frame = Frame::new(input.view, size, &light, &fit, reach_m, input.time_s);
+        let detail = input.blades.map(|blades| blades.detail);
+        let frame = Frame::new(input.view, size, &light, &fit, detail, input.time_s);
         self.groups.write(gpu, frame)?;
         self.terrain.write(gpu, input.view, aspect)?;
         if let Some(blades) = &input.blades {

@@ -33,10 +33,11 @@ pub use sky::{Daylight, Sun};
 pub use tonemap::Exposure;
 
 use crate::gpu::GpuStruct;
-use crate::gpu::field_data::NO_SLAB;
+use crate::gpu::field_data::{NO_SLAB, TileRecord};
 use crate::gpu::layout::StructLayout;
 use crate::gpu::wgsl::WgslFile;
 use crate::wgsl_file;
+use blades::{TUFT_RADIUS_M, TUFT_TURNS};
 use terrain::{CHUNK_SAMPLES, LAND_RINGS_M};
 
 /// Format in which light is added up before it is shown.
@@ -49,7 +50,7 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/noise.wgsl"),
     wgsl_file!("shared/screen.wgsl"),
     wgsl_file!("shared/shadow.wgsl"),
-    wgsl_file!("blades.wgsl", NO_SLAB),
+    wgsl_file!("blades.wgsl", NO_SLAB, TUFT_RADIUS_M, TUFT_TURNS),
     wgsl_file!("bodies.wgsl"),
     wgsl_file!("overlay.wgsl"),
     wgsl_file!("sky.wgsl"),
@@ -64,6 +65,7 @@ pub fn layouts() -> Vec<StructLayout> {
         blades::BladeLook::layout(),
         blades::Band::layout(),
         blades::DrawnTile::layout(),
+        TileRecord::layout(),
         bodies::BodyRecord::layout(),
         overlay::OverlayBox::layout(),
         terrain::Ground::layout(),

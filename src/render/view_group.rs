@@ -6,6 +6,7 @@ use wgpu::{BindGroup, BindGroupLayout, BindingType, BufferUsages, ShaderStages};
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::gpu_struct;
 
+use super::blades::BladeDetail;
 use super::camera::View;
 use super::pipeline::{UNIFORM, bind_group, group_layout};
 use super::shadow::ShadowFit;
@@ -28,7 +29,10 @@ gpu_struct! {
         bounce_rgb: [f32; 3],
         blade_reach_m: f32,
         eye_in_sky: [f32; 2],
+        blade_full_m: f32,
+        pad_a: f32,
         viewport_px: [f32; 2],
+        pad_b: [f32; 2],
     }
 }
 
@@ -43,7 +47,7 @@ impl Frame {
         size: [u32; 2],
         light: &Daylight,
         shadow: &ShadowFit,
-        blade_reach_m: f32,
+        blades: Option<BladeDetail>,
         time_s: f64,
     ) -> Self {
         let clip_from_eye = view.clip_from_eye(size[0] as f32 / size[1] as f32);
@@ -60,9 +64,12 @@ impl Frame {
             horizon_rgb: light.horizon_rgb,
             shadow_texel_m: shadow.texel_m(),
             bounce_rgb: light.bounce_rgb,
-            blade_reach_m,
+            blade_reach_m: blades.map_or(0.0, |detail| detail.reach_m),
             eye_in_sky: [(time_s * CLOUDS_PER_S) as f32, 0.0],
+            blade_full_m: blades.map_or(0.0, |detail| detail.full_m),
+            pad_a: 0.0,
             viewport_px: size.map(|n| n as f32),
+            pad_b: [0.0; 2],
         }
     }
 }
@@ -136,7 +143,12 @@ impl ViewGroups {
 
     /// Groups of a layer without data of its own.
     pub(super) fn view_only(&self) -> [Option<&BindGroupLayout>; 4] {
-        [Some(&self.no_field_layout), Some(&self.frame_layout), None, None]
+        [
+            Some(&self.no_field_layout),
+            Some(&self.frame_layout),
+            None,
+            None,
+        ]
     }
 
     /// Groups of a layer on which no shadow falls.
