@@ -19,6 +19,8 @@ struct Ground {
     cover: f32, // share of the ground that plants hide, 0 to 1
     mean_rgb: vec3f, // of the base colours, for the land far away
     pad: f32,
+    map_m: vec2f, // extent of the base-colour map
+    pad_b: vec2f,
 }
 
 struct Chunk {
@@ -140,13 +142,17 @@ fn land_vertex(@builtin(vertex_index) vertex: u32) -> GroundPoint {
     return GroundPoint(clip, position, normal, place, max(out_m, 0.0));
 }
 
+// Share of the light that reaches the tops of the grass past other tops.
+const GRASS_TOP_OPEN = 0.62;
+
 struct Surface {
     albedo: vec3f,
     relief_m: f32, // small height for bumps
     open: f32, // share of the light that comes past the plants
 }
 
-// Earth, moss and thatch between the blades, seen from near.
+// Earth, moss and thatch between the blades, seen from near. Under grass it is mostly the green
+// and straw of the lowest leaves; bare ground is mostly earth.
 fn floor_of_grass(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
     let patches = cloudy_noise(place * 3.7);
     let lumps = mix(0.5, cloudy_noise(place * 14.0 + 5.0), detail_weight(0.07, pixel_m));
@@ -158,29 +164,31 @@ fn floor_of_grass(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
     );
     let fibres = value_noise(fibre_place * vec2f(14.0, 190.0))
         * value_noise(fibre_place.yx * vec2f(17.0, 150.0) + 40.0);
-    let thatch = smoothstep(0.28, 0.55, fibres) * detail_weight(0.02, pixel_m);
+    let thatch = smoothstep(0.22, 0.5, fibres) * detail_weight(0.02, pixel_m);
 
     let earth = ground.soil_rgb * (0.55 + 0.9 * lumps) * (0.75 + 0.5 * grains);
-    let moss = mix(base, ground.soil_rgb, 0.3) * (0.4 + 0.7 * lumps) * (0.8 + 0.4 * grains);
-    let straw = vec3f(0.30, 0.23, 0.11) * (0.5 + 0.5 * lumps);
-    var albedo = mix(earth, moss, smoothstep(0.25, 0.75, patches + 0.7 * (lumps - 0.5)));
-    albedo = mix(albedo, straw, 0.55 * thatch);
-    let relief = 0.012 * lumps + 0.0018 * grains + 0.002 * thatch;
-    return Surface(albedo, relief, 1.0 - 0.45 * ground.cover);
+    let moss = mix(base, ground.soil_rgb, 0.25) * (0.35 + 0.8 * lumps) * (0.75 + 0.5 * grains);
+    let leaves = mix(base * 1.1, vec3f(0.30, 0.24, 0.11), 0.55) * (0.6 + 0.6 * lumps);
+    let green = smoothstep(0.25, 0.75, patches + 0.7 * (lumps - 0.5) + 0.35 * ground.cover);
+    var albedo = mix(earth, moss, green);
+    albedo = mix(albedo, leaves, thatch * mix(0.35, 0.6, ground.cover));
+    let relief = 0.012 * lumps + 0.0018 * grains + 0.003 * thatch;
+    return Surface(albedo, relief, 1.0 - 0.78 * ground.cover);
 }
 
 // The field where single blades are too small to draw: tops of clumps, with dark between them.
-fn top_of_grass(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
+// `long_pixel_m` is the longer side of a pixel's footprint.
+fn top_of_grass(place: vec2f, base: vec3f, pixel_m: f32, long_pixel_m: f32) -> Surface {
     let clumps = mix(0.5, value_noise(place * 3.1), detail_weight(0.3, pixel_m));
     let tufts = mix(0.5, value_noise(place * 13.0), detail_weight(0.08, pixel_m));
     let tips = mix(0.5, value_noise(place * vec2f(90.0, 70.0)), detail_weight(0.012, pixel_m));
-    let swathes = cloudy_noise(place * 0.21);
-    let fields = cloudy_noise(place * 0.009 + 8.0);
-    let light = 0.55 + 0.25 * clumps + 0.35 * tufts + 0.3 * tips;
-    let dry = vec3f(1.25, 1.05, 0.8);
-    let lush = vec3f(0.86, 0.98, 0.95);
+    let swathes = mix(0.5, cloudy_noise(place * 0.21), detail_weight(4.0, long_pixel_m));
+    let fields = mix(0.5, cloudy_noise(place * 0.009 + 8.0), detail_weight(90.0, long_pixel_m));
+    let light = 0.45 + 0.25 * clumps + 0.45 * tufts + 0.35 * tips;
+    let dry = vec3f(1.2, 1.04, 0.85);
+    let lush = vec3f(0.88, 0.97, 0.95);
     let tint = mix(lush, dry, saturate(0.55 * swathes + 0.45 * fields));
-    return Surface(base * tint * light * 0.82, 0.05 * clumps + 0.02 * tufts, 0.85);
+    return Surface(base * tint * light, 0.05 * clumps + 0.02 * tufts, GRASS_TOP_OPEN);
 }
 
 // Bends a normal by a small height that varies over the screen (Mikkelsen 2010).
@@ -198,18 +206,22 @@ fn bumped(normal: vec3f, position: vec3f, relief_m: f32) -> vec3f {
 fn ground_fragment(in: GroundPoint) -> @location(0) vec4f {
     let distance = length(in.position_from_eye);
     let to_eye = -in.position_from_eye / max(distance, 1e-6);
-    let facing_eye = max(dot(to_eye, normalize(in.normal)), 0.08);
-    // The longer side of a pixel's footprint, tamed at grazing angles.
+    let facing_eye = max(dot(to_eye, normalize(in.normal)), 0.004);
+    let long_pixel_m = distance * frame.pixel_rad / facing_eye;
+    // Between the two sides of the footprint, so that near detail does not blur at once.
     let pixel_m = distance * frame.pixel_rad / sqrt(facing_eye);
-    let uv = in.place_in_field / ground.size_m;
+    let uv = in.place_in_field / ground.map_m;
     let map_rgb = textureSampleLevel(base_colour, base_sampler, uv, 0.0).rgb;
     // Mirror images of the field would show from a hill: the land turns to its mean colour.
     let base = mix(map_rgb, ground.mean_rgb, smoothstep(10.0, 90.0, in.beyond_m));
 
     let near = floor_of_grass(in.place_in_field, base, pixel_m);
-    let far = top_of_grass(in.place_in_field, base, pixel_m);
+    let far = top_of_grass(in.place_in_field, base, pixel_m, long_pixel_m);
+    // As fewer blades are drawn, the ground takes over their look.
+    let full = frame.blade_full_m;
     let reach = frame.blade_reach_m;
-    var grown = smoothstep(0.6 * reach, 0.95 * reach, distance);
+    var grown = 0.8 * smoothstep(full, 4.0 * full, distance);
+    grown = max(grown, smoothstep(0.5 * reach, 0.95 * reach, distance));
     grown = max(grown, smoothstep(0.0, 1.5, in.beyond_m)) * select(0.0, 1.0, ground.canopy_m > 0.0);
     let albedo = mix(near.albedo, far.albedo, grown);
     let open = mix(near.open, far.open, grown);

@@ -16,7 +16,10 @@ struct Frame {
     bounce_rgb: vec3f, // light that the ground throws up
     blade_reach_m: f32, // blades are drawn up to this distance
     eye_in_sky: vec2f, // slow drift of the sky's haze
+    blade_full_m: f32, // every blade is drawn up to this distance
+    pad_a: f32,
     viewport_px: vec2f,
+    pad_b: vec2f,
 }
 
 @group(1) @binding(0) var<uniform> frame: Frame;

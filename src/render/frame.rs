@@ -1,17 +1,19 @@
 //! One frame as a list.
 
 use crate::bodies::RigidShape;
+use crate::field::Field;
 use crate::gpu::{Gpu, PassTimer};
-use crate::terrain::HeightGrid;
 
+use super::blades::{BladeCounts, BladesInput, BladesLayer, Canopy};
 use super::bodies::{BodiesLayer, BodyInstance};
 use super::camera::View;
 use super::error::RenderError;
+use super::ground_look::{GroundLook, GroundTexture};
 use super::overlay::{OverlayLayer, TileMark};
 use super::shadow::{ShadowFit, ShadowMap};
 use super::sky::{SkyLayer, Sun};
 use super::targets::{Targets, most_samples};
-use super::terrain::{GroundLook, TerrainLayer};
+use super::terrain::TerrainLayer;
 use super::tonemap::{Exposure, TonemapLayer};
 use super::view_group::{Frame, ViewGroups};
 
@@ -21,6 +23,7 @@ pub struct Renderer {
     groups: ViewGroups,
     shadow: ShadowMap,
     bodies: BodiesLayer,
+    blades: BladesLayer,
     terrain: TerrainLayer,
     sky: SkyLayer,
     overlay: OverlayLayer,
@@ -37,6 +40,8 @@ pub struct FrameInput<'a> {
     pub sun: Sun,
     pub exposure: Exposure,
     pub bodies: &'a [BodyInstance],
+    /// The plants; `None` leaves them out.
+    pub blades: Option<BladesInput<'a>>,
     /// Boxes of the tile-state overlay; empty to leave it out.
     pub marks: &'a [TileMark],
     /// Seconds since the start, for drifting clouds.
@@ -61,6 +66,7 @@ impl Renderer {
         let tonemap = TonemapLayer::new(gpu, format)?;
         Ok(Self {
             bodies: BodiesLayer::new(gpu, &groups, samples)?,
+            blades: BladesLayer::new(gpu, &groups, samples)?,
             terrain: TerrainLayer::new(gpu, &groups, samples)?,
             sky: SkyLayer::new(gpu, &groups, samples)?,
             overlay: OverlayLayer::new(gpu, &groups, samples)?,
@@ -73,18 +79,22 @@ impl Renderer {
         })
     }
 
-    /// Takes a scene's ground and body shapes in place of the old ones.
+    /// Takes a scene's ground, plants and body shapes in place of the old ones.
     ///
     /// # Errors
     /// Bad colour maps, data larger than the device can bind.
     pub fn set_scene(
         &mut self,
         gpu: &Gpu,
-        ground: &HeightGrid,
+        field: &Field,
         look: &GroundLook<'_>,
         shapes: &[RigidShape],
     ) -> Result<(), RenderError> {
-        self.terrain.set_ground(gpu, ground, look)?;
+        let colour = GroundTexture::new(gpu, look)?;
+        let canopy = Canopy::of(field);
+        self.terrain
+            .set_ground(gpu, &field.ground, &colour, look.soil_rgb, canopy)?;
+        self.blades.set_field(gpu, field, &colour)?;
         self.set_shapes(gpu, shapes)
     }
 
@@ -108,6 +118,11 @@ impl Renderer {
         Ok(())
     }
 
+    /// What the last frame drew of the plants.
+    pub fn blade_counts(&self) -> BladeCounts {
+        self.blades.counts
+    }
+
     /// Width and height of the pictures, in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.targets.size
@@ -129,14 +144,15 @@ impl Renderer {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
 
         let mut pass = self.shadow.begin(&mut encoder, timer.render("shadow"));
-        pass.set_bind_group(1, &self.groups.frame_group, &[]);
+        self.groups.bind_unlit(&mut pass);
         self.bodies.draw_shadow(&mut pass);
         drop(pass);
 
         let mut pass = self.targets.begin(&mut encoder, timer.render("scene"));
-        pass.set_bind_group(1, &self.groups.frame_group, &[]);
-        pass.set_bind_group(2, &self.groups.shadow_group, &[]);
+        self.groups.bind(&mut pass);
         self.bodies.draw(&mut pass);
+        self.blades.draw(&mut pass);
+        self.groups.bind(&mut pass);
         self.terrain.draw(&mut pass);
         self.sky.draw(&mut pass);
         self.overlay.draw(&mut pass);
@@ -159,10 +175,13 @@ impl Renderer {
         let light = input.sun.daylight();
         let casters = self.bodies.write(gpu, input.view, input.bodies)?;
         let fit = ShadowFit::new(&light, input.view, &casters);
-        let reach_m = 60.0;
-        let frame = Frame::new(input.view, size, &light, &fit, reach_m, input.time_s);
+        let detail = input.blades.map(|blades| blades.detail);
+        let frame = Frame::new(input.view, size, &light, &fit, detail, input.time_s);
         self.groups.write(gpu, frame)?;
         self.terrain.write(gpu, input.view, aspect)?;
+        if let Some(blades) = &input.blades {
+            self.blades.write(gpu, input.view, aspect, blades)?;
+        }
         self.overlay.write(gpu, input.view, input.marks)?;
         self.tonemap.write(gpu, input.exposure)?;
         Ok(())

@@ -3,10 +3,13 @@
 //! Pipelines and targets live as long as the renderer, the ground and the shapes as long as a
 //! scene, everything else for one frame. All positions go to the device relative to the eye.
 
+mod active_nodes;
+mod blades;
 mod bodies;
 mod camera;
 mod error;
 mod frame;
+mod ground_look;
 mod overlay;
 mod picture;
 mod pipeline;
@@ -17,20 +20,24 @@ mod terrain;
 mod tonemap;
 mod view_group;
 
+pub use active_nodes::ActiveNodes;
+pub use blades::{BladeCounts, BladeDetail, BladesInput};
 pub use bodies::BodyInstance;
 pub use camera::{Frustum, View};
 pub use error::RenderError;
 pub use frame::{FrameInput, Renderer};
+pub use ground_look::GroundLook;
 pub use overlay::{TileMark, TileTone};
 pub use picture::{Picture, PictureTarget};
 pub use sky::{Daylight, Sun};
-pub use terrain::GroundLook;
 pub use tonemap::Exposure;
 
 use crate::gpu::GpuStruct;
+use crate::gpu::field_data::{NO_SLAB, TileRecord};
 use crate::gpu::layout::StructLayout;
 use crate::gpu::wgsl::WgslFile;
 use crate::wgsl_file;
+use blades::{TUFT_RADIUS_M, TUFT_TURNS};
 use terrain::{CHUNK_SAMPLES, LAND_RINGS_M};
 
 /// Format in which light is added up before it is shown.
@@ -43,6 +50,7 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/noise.wgsl"),
     wgsl_file!("shared/screen.wgsl"),
     wgsl_file!("shared/shadow.wgsl"),
+    wgsl_file!("blades.wgsl", NO_SLAB, TUFT_RADIUS_M, TUFT_TURNS),
     wgsl_file!("bodies.wgsl"),
     wgsl_file!("overlay.wgsl"),
     wgsl_file!("sky.wgsl"),
@@ -54,6 +62,10 @@ pub const SHADERS: &[WgslFile] = &[
 pub fn layouts() -> Vec<StructLayout> {
     vec![
         view_group::Frame::layout(),
+        blades::BladeLook::layout(),
+        blades::Band::layout(),
+        blades::DrawnTile::layout(),
+        TileRecord::layout(),
         bodies::BodyRecord::layout(),
         overlay::OverlayBox::layout(),
         terrain::Ground::layout(),

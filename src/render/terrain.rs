@@ -10,8 +10,9 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::gpu_struct;
 use crate::terrain::HeightGrid;
 
+use super::blades::Canopy;
 use super::camera::View;
-use super::error::RenderError;
+use super::ground_look::GroundTexture;
 use super::pipeline::{DepthUse, Drawing, READ_STORAGE, UNIFORM, bind_group, group_layout};
 use super::view_group::ViewGroups;
 
@@ -22,22 +23,6 @@ pub(super) const CHUNK_SAMPLES: u32 = 33;
 pub(super) const LAND_RINGS_M: [f32; 12] = [
     -0.1, 0.0, 1.0, 3.0, 9.0, 25.0, 60.0, 150.0, 400.0, 1000.0, 2500.0, 7000.0,
 ];
-
-/// How the ground looks.
-#[derive(Clone, Copy, Debug)]
-pub struct GroundLook<'a> {
-    /// Texels of the base-colour map along x and z; it covers the whole field.
-    pub columns: u32,
-    pub rows: u32,
-    /// Red, green, blue (sRGB-encoded) and an unused byte, row by row from the smallest z.
-    pub rgba8: &'a [u8],
-    /// Colour of bare earth, linear RGB.
-    pub soil_rgb: [f32; 3],
-    /// Height of the grass, in metres; 0 where none grows.
-    pub canopy_m: f32,
-    /// Share of the ground that plants hide from above, 0 to 1.
-    pub cover: f32,
-}
 
 gpu_struct! {
     pub(super) struct Ground {
@@ -54,6 +39,8 @@ gpu_struct! {
         cover: f32,
         mean_rgb: [f32; 3],
         pad: f32,
+        map_m: [f32; 2],
+        pad_b: [f32; 2],
     }
 }
 
@@ -96,7 +83,6 @@ pub(super) struct TerrainLayer {
     layout: wgpu::BindGroupLayout,
     /// Triangles of a chunk's squares.
     indices: Buffer<u32>,
-    sampler: wgpu::Sampler,
     scene: Option<GroundScene>,
 }
 
@@ -138,15 +124,6 @@ impl TerrainLayer {
             land: land.pipeline(gpu)?,
             layout,
             indices: Buffer::with(gpu, "chunk indices", &chunk_indices(), BufferUsages::INDEX)?,
-            // Mirrored, so that the land beyond the edge goes on in the field's colours.
-            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("base colour"),
-                address_mode_u: wgpu::AddressMode::MirrorRepeat,
-                address_mode_v: wgpu::AddressMode::MirrorRepeat,
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                ..Default::default()
-            }),
             scene: None,
         })
     }
@@ -154,15 +131,15 @@ impl TerrainLayer {
     /// Takes a field's heights and colours in place of the old ones.
     ///
     /// # Errors
-    /// A colour map whose bytes do not fit its size; `TooLarge` for more samples than the device
-    /// can bind.
+    /// `TooLarge` for more samples than the device can bind.
     pub(super) fn set_ground(
         &mut self,
         gpu: &Gpu,
         heights: &HeightGrid,
-        look: &GroundLook<'_>,
-    ) -> Result<(), RenderError> {
-        let colour = base_colour(gpu, look)?;
+        colour: &GroundTexture,
+        soil_rgb: [f32; 3],
+        canopy: Canopy,
+    ) -> Result<(), GpuError> {
         let samples = Buffer::with(
             gpu,
             "ground heights",
@@ -180,12 +157,12 @@ impl TerrainLayer {
                 uniform.binding(),
                 samples.binding(),
                 records.binding(),
-                wgpu::BindingResource::TextureView(&colour),
-                wgpu::BindingResource::Sampler(&self.sampler),
+                wgpu::BindingResource::TextureView(&colour.view),
+                wgpu::BindingResource::Sampler(&colour.sampler),
             ],
         );
         self.scene = Some(GroundScene {
-            ground: ground_uniform(heights, look),
+            ground: ground_uniform(heights, colour, soil_rgb, canopy),
             corner_in_world: heights.corner_in_world(),
             chunks,
             uniform,
@@ -283,7 +260,12 @@ fn chunks_of(heights: &HeightGrid) -> Vec<ChunkBounds> {
     chunks
 }
 
-fn ground_uniform(heights: &HeightGrid, look: &GroundLook<'_>) -> Ground {
+fn ground_uniform(
+    heights: &HeightGrid,
+    colour: &GroundTexture,
+    soil_rgb: [f32; 3],
+    canopy: Canopy,
+) -> Ground {
     let [east, south] = heights.squares();
     let edge: Vec<f32> = (0..=east)
         .flat_map(|i| [heights.sample(i, 0), heights.sample(i, south)])
@@ -294,84 +276,20 @@ fn ground_uniform(heights: &HeightGrid, look: &GroundLook<'_>) -> Ground {
         columns: heights.columns,
         rows: heights.rows,
         spacing_m: heights.spacing_m,
-        canopy_m: look.canopy_m,
+        canopy_m: canopy.height_m,
         size_m: heights.size_m().map(|s| s as f32),
         edge_y_m: edge.iter().sum::<f32>() / edge.len() as f32,
         edge_steps: 2 * (east + south),
         corner_from_eye: [0.0; 3],
         // Even around a flat field the far land rolls a little.
         hill_m: (0.5 * (high - low)).clamp(9.0, 40.0),
-        soil_rgb: look.soil_rgb,
-        cover: look.cover.clamp(0.0, 1.0),
-        mean_rgb: mean_rgb(look.rgba8),
+        soil_rgb,
+        cover: canopy.cover,
+        mean_rgb: colour.mean_rgb,
         pad: 0.0,
+        map_m: colour.size_m,
+        pad_b: [0.0; 2],
     }
-}
-
-/// Mean of sRGB-encoded texels, as linear light.
-fn mean_rgb(rgba8: &[u8]) -> [f32; 3] {
-    let mut sum = [0.0_f64; 3];
-    for texel in rgba8.chunks_exact(4) {
-        for (total, &byte) in sum.iter_mut().zip(texel) {
-            let encoded = f64::from(byte) / 255.0;
-            *total += if encoded <= 0.04045 {
-                encoded / 12.92
-            } else {
-                ((encoded + 0.055) / 1.055).powf(2.4)
-            };
-        }
-    }
-    let texels = (rgba8.len() / 4).max(1) as f64;
-    sum.map(|total| (total / texels) as f32)
-}
-
-/// Uploads the base-colour map.
-fn base_colour(gpu: &Gpu, look: &GroundLook<'_>) -> Result<wgpu::TextureView, RenderError> {
-    let (width, height) = (look.columns, look.rows);
-    let limit = gpu.device.limits().max_texture_dimension_2d;
-    let bytes = u64::from(width) * u64::from(height) * 4;
-    if width == 0 || height == 0 || width > limit || height > limit {
-        return Err(RenderError::BadInput {
-            what: "the base-colour map's size",
-            found: format!("{width} x {height} texels; the device's limit is {limit}"),
-            wanted: "give each side 1 texel to the limit",
-        });
-    }
-    if look.rgba8.len() as u64 != bytes {
-        return Err(RenderError::BadInput {
-            what: "the base-colour map",
-            found: format!("{} bytes for {width} x {height} texels", look.rgba8.len()),
-            wanted: "give four bytes per texel",
-        });
-    }
-    let size = wgpu::Extent3d {
-        width,
-        height,
-        depth_or_array_layers: 1,
-    };
-    let texture = gpu.guarded("the base-colour map", || {
-        gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("base colour"),
-            size,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8UnormSrgb,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        })
-    })?;
-    gpu.queue.write_texture(
-        texture.as_image_copy(),
-        look.rgba8,
-        wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(width * 4),
-            rows_per_image: None,
-        },
-        size,
-    );
-    Ok(texture.create_view(&Default::default()))
 }
 
 #[cfg(test)]

@@ -22,8 +22,8 @@ pub struct Exposure {
 impl Default for Exposure {
     fn default() -> Self {
         Self {
-            exposure: 0.66,
-            contrast: 1.10,
+            exposure: 0.74,
+            contrast: 1.22,
             saturation: 1.10,
         }
     }

@@ -6,6 +6,7 @@ use wgpu::{BindGroup, BindGroupLayout, BindingType, BufferUsages, ShaderStages};
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::gpu_struct;
 
+use super::blades::BladeDetail;
 use super::camera::View;
 use super::pipeline::{UNIFORM, bind_group, group_layout};
 use super::shadow::ShadowFit;
@@ -28,7 +29,10 @@ gpu_struct! {
         bounce_rgb: [f32; 3],
         blade_reach_m: f32,
         eye_in_sky: [f32; 2],
+        blade_full_m: f32,
+        pad_a: f32,
         viewport_px: [f32; 2],
+        pad_b: [f32; 2],
     }
 }
 
@@ -43,7 +47,7 @@ impl Frame {
         size: [u32; 2],
         light: &Daylight,
         shadow: &ShadowFit,
-        blade_reach_m: f32,
+        blades: Option<BladeDetail>,
         time_s: f64,
     ) -> Self {
         let clip_from_eye = view.clip_from_eye(size[0] as f32 / size[1] as f32);
@@ -60,9 +64,12 @@ impl Frame {
             horizon_rgb: light.horizon_rgb,
             shadow_texel_m: shadow.texel_m(),
             bounce_rgb: light.bounce_rgb,
-            blade_reach_m,
+            blade_reach_m: blades.map_or(0.0, |detail| detail.reach_m),
             eye_in_sky: [(time_s * CLOUDS_PER_S) as f32, 0.0],
+            blade_full_m: blades.map_or(0.0, |detail| detail.full_m),
+            pad_a: 0.0,
             viewport_px: size.map(|n| n as f32),
+            pad_b: [0.0; 2],
         }
     }
 }
@@ -70,16 +77,22 @@ impl Frame {
 /// The shared groups and their layouts.
 #[derive(Debug)]
 pub(super) struct ViewGroups {
-    pub(super) frame_layout: BindGroupLayout,
-    pub(super) shadow_layout: BindGroupLayout,
-    pub(super) frame_group: BindGroup,
-    pub(super) shadow_group: BindGroup,
+    /// An empty group 0 for layers without plants. Leaving it out would be the same in WebGPU,
+    /// but wgpu 30 on Vulkan loses the later groups when a pipeline without a group 0 follows
+    /// one that has it.
+    no_field_layout: BindGroupLayout,
+    no_field_group: BindGroup,
+    frame_layout: BindGroupLayout,
+    shadow_layout: BindGroupLayout,
+    frame_group: BindGroup,
+    shadow_group: BindGroup,
     frame: Buffer<Frame>,
 }
 
 impl ViewGroups {
     pub(super) fn new(gpu: &Gpu, shadow_map: &wgpu::TextureView) -> Result<Self, GpuError> {
         let both = ShaderStages::VERTEX_FRAGMENT;
+        let no_field_layout = group_layout(gpu, "no field", &[]);
         let frame_layout = group_layout(gpu, "view", &[(both, UNIFORM)]);
         let shadow_layout = group_layout(
             gpu,
@@ -118,6 +131,8 @@ impl ViewGroups {
             ],
         );
         Ok(Self {
+            no_field_group: bind_group(gpu, "no field", &no_field_layout, &[]),
+            no_field_layout,
             frame_layout,
             shadow_layout,
             frame_group,
@@ -128,7 +143,12 @@ impl ViewGroups {
 
     /// Groups of a layer without data of its own.
     pub(super) fn view_only(&self) -> [Option<&BindGroupLayout>; 4] {
-        [None, Some(&self.frame_layout), None, None]
+        [
+            Some(&self.no_field_layout),
+            Some(&self.frame_layout),
+            None,
+            None,
+        ]
     }
 
     /// Groups of a layer on which no shadow falls.
@@ -136,7 +156,8 @@ impl ViewGroups {
         &'a self,
         layer: &'a BindGroupLayout,
     ) -> [Option<&'a BindGroupLayout>; 4] {
-        [None, Some(&self.frame_layout), None, Some(layer)]
+        let [field, view, shadow, _] = self.view_only();
+        [field, view, shadow, Some(layer)]
     }
 
     /// Groups of a layer that receives shadows.
@@ -144,8 +165,20 @@ impl ViewGroups {
         &'a self,
         layer: &'a BindGroupLayout,
     ) -> [Option<&'a BindGroupLayout>; 4] {
-        let [_, view, _, layer] = self.unlit(layer);
-        [None, view, Some(&self.shadow_layout), layer]
+        let [field, view, _, layer] = self.unlit(layer);
+        [field, view, Some(&self.shadow_layout), layer]
+    }
+
+    /// Binds the view; group 0 stays empty.
+    pub(super) fn bind_unlit(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_bind_group(0, &self.no_field_group, &[]);
+        pass.set_bind_group(1, &self.frame_group, &[]);
+    }
+
+    /// Binds the view and the shadow map; group 0 stays empty.
+    pub(super) fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.bind_unlit(pass);
+        pass.set_bind_group(2, &self.shadow_group, &[]);
     }
 
     pub(super) fn write(&self, gpu: &Gpu, frame: Frame) -> Result<(), GpuError> {

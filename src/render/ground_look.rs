@@ -1,0 +1,128 @@
+//! The colours of the ground, as a texture that the ground and the plants on it share.
+
+use crate::gpu::Gpu;
+
+use super::error::RenderError;
+
+/// How the ground looks.
+#[derive(Clone, Copy, Debug)]
+pub struct GroundLook<'a> {
+    /// Texels of the base-colour map along x and z, from the field's corner.
+    pub columns: u32,
+    pub rows: u32,
+    /// Side of a texel, in metres.
+    pub texel_m: f64,
+    /// Red, green, blue (sRGB-encoded) and an unused byte, row by row from the smallest z.
+    pub rgba8: &'a [u8],
+    /// Colour of bare earth, linear RGB.
+    pub soil_rgb: [f32; 3],
+}
+
+/// The map on the device.
+#[derive(Clone, Debug)]
+pub(super) struct GroundTexture {
+    pub(super) view: wgpu::TextureView,
+    pub(super) sampler: wgpu::Sampler,
+    /// Extent of the map along x and z.
+    pub(super) size_m: [f32; 2],
+    /// Mean colour, linear RGB.
+    pub(super) mean_rgb: [f32; 3],
+}
+
+impl GroundTexture {
+    /// Uploads the map.
+    ///
+    /// # Errors
+    /// A size the device cannot hold, or bytes that do not fit the size.
+    pub(super) fn new(gpu: &Gpu, look: &GroundLook<'_>) -> Result<Self, RenderError> {
+        let (width, height) = (look.columns, look.rows);
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        if width == 0 || height == 0 || width > limit || height > limit {
+            return Err(RenderError::BadInput {
+                what: "the base-colour map's size",
+                found: format!("{width} x {height} texels; the device's limit is {limit}"),
+                wanted: "give each side 1 texel to the limit",
+            });
+        }
+        if look.rgba8.len() as u64 != u64::from(width) * u64::from(height) * 4 {
+            return Err(RenderError::BadInput {
+                what: "the base-colour map",
+                found: format!("{} bytes for {width} x {height} texels", look.rgba8.len()),
+                wanted: "give four bytes per texel",
+            });
+        }
+        let size = wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        };
+        let texture = gpu.guarded("the base-colour map", || {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("base colour"),
+                size,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: wgpu::TextureFormat::Rgba8UnormSrgb,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+                view_formats: &[],
+            })
+        })?;
+        gpu.queue.write_texture(
+            texture.as_image_copy(),
+            look.rgba8,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(width * 4),
+                rows_per_image: None,
+            },
+            size,
+        );
+        // Mirrored, so that the land beyond the edge goes on in the field's colours.
+        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("base colour"),
+            address_mode_u: wgpu::AddressMode::MirrorRepeat,
+            address_mode_v: wgpu::AddressMode::MirrorRepeat,
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Ok(Self {
+            view: texture.create_view(&Default::default()),
+            sampler,
+            size_m: [width, height].map(|n| (f64::from(n) * look.texel_m) as f32),
+            mean_rgb: mean_rgb(look.rgba8),
+        })
+    }
+}
+
+/// Mean of sRGB-encoded texels, as linear light.
+fn mean_rgb(rgba8: &[u8]) -> [f32; 3] {
+    let mut sum = [0.0_f64; 3];
+    for texel in rgba8.chunks_exact(4) {
+        for (total, &byte) in sum.iter_mut().zip(texel) {
+            let encoded = f64::from(byte) / 255.0;
+            // IEC 61966-2-1.
+            *total += if encoded <= 0.04045 {
+                encoded / 12.92
+            } else {
+                ((encoded + 0.055) / 1.055).powf(2.4)
+            };
+        }
+    }
+    let texels = (rgba8.len() / 4).max(1) as f64;
+    sum.map(|total| (total / texels) as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_is_of_light_not_of_bytes() {
+        let [r, g, b] = mean_rgb(&[255, 0, 188, 255, 0, 0, 188, 255]);
+        assert!((r - 0.5).abs() < 1e-6 && g == 0.0);
+        // sRGB 188 is 0.503 of full light, to half a byte's step of 0.0024.
+        assert!((b - 0.503).abs() < 0.0024, "{b}");
+    }
+}
