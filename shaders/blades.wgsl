@@ -11,6 +11,7 @@
 #import "shared/plant.wgsl"
 #import "shared/pose.wgsl"
 #import "shared/shadow.wgsl"
+#import "shared/state.wgsl"
 #import "shared/wind.wgsl"
 
 struct BladeLook {
@@ -43,7 +44,7 @@ struct DrawnTile {
 @group(3) @binding(0) var<uniform> blade_look: BladeLook;
 @group(3) @binding(1) var<storage, read> bands: array<Band>;
 @group(3) @binding(2) var<storage, read> drawn_tiles: array<DrawnTile>;
-// Node j + 1 of place p in slab s at (s * plants_per_tile + p) * segments + j.
+// Nodes of the plants in active tiles, as `recover` leaves them: a row per node, root first.
 @group(3) @binding(3) var<storage, read> active_nodes: array<vec4f>;
 @group(3) @binding(4) var base_colour: texture_2d<f32>;
 @group(3) @binding(5) var base_sampler: sampler;
@@ -68,26 +69,15 @@ fn taper(along: f32) -> f32 {
         * (1.0 - 0.35 * along);
 }
 
-fn active_node(slab: u32, place: u32, node: u32) -> vec3f {
-    let first = (slab * field.plants_per_tile + place) * field.segments;
-    return active_nodes[first + node - 1u].xyz;
-}
-
 fn pose_node(tile: TileRecord, plant: Plant, place: u32, node: u32) -> PoseNode {
     if tile.slab == NO_SLAB {
         return wind_pose_at(plant, wind_bend(tile, plant), node);
     }
-    var at = plant.root;
-    if node > 0u {
-        at = active_node(tile.slab, place, node);
-    }
+    let root = plant_row(tile.slab, place);
     // The segment above, or the last one at the tip.
     let upper = min(node + 1u, field.segments);
-    var lower = plant.root;
-    if upper > 1u {
-        lower = active_node(tile.slab, place, upper - 1u);
-    }
-    return PoseNode(at, unit_or(active_node(tile.slab, place, upper) - lower, UP));
+    let along = active_nodes[root + upper].xyz - active_nodes[root + upper - 1u].xyz;
+    return PoseNode(active_nodes[root + node].xyz, unit_or(along, UP));
 }
 
 // A blade of a plant's tuft: 0 is the simulated one, the others stand by it.
