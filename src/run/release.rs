@@ -79,8 +79,7 @@ impl Release {
             let [low, high] = field.grid.tile_bounds(tile.tile, &field.ground);
             let middle_m = [0, 1].map(|a| 0.5 * (low[a] + high[a]));
             let mut plants = engine.near(meadow, middle_m, half)?.into_iter();
-            let let_go =
-                plants.find(|p| just_now.contains(&p.touched_at) && tip_m(p) > WORTH_M);
+            let let_go = plants.find(|p| just_now.contains(&p.touched_at) && tip_m(p) > WORTH_M);
             if let Some(plant) = let_go {
                 return Ok(Some(Followed {
                     root_m: plant.root_in_world(),

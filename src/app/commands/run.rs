@@ -12,9 +12,7 @@ use super::scene_file;
 use crate::app::{Failure, complain};
 use crate::run::report::{Report, Scenario};
 use crate::run::trace::Trace;
-use crate::run::{
-    Device, Exit, Frame, RunError, RunOptions, junit, run_scene, table,
-};
+use crate::run::{Device, Exit, Frame, RunError, RunOptions, junit, run_scene, table};
 use crate::scene::limits;
 
 /// Run scenarios without a window and check their expectations
@@ -139,7 +137,8 @@ fn run_one(
         }
     };
     let outcome = catch_unwind(AssertUnwindSafe(|| {
-        run_scene(&loaded, options, &Device::Processor, each_frame).map(|outcome| Scenario::of(&outcome))
+        run_scene(&loaded, options, &Device::Processor, each_frame)
+            .map(|outcome| Scenario::of(&outcome))
     }));
     bar.finish_and_clear();
     match outcome {
