@@ -251,10 +251,13 @@ fn deepest_in(meadow: &Meadow, tile: &TileWork, p: Vec3<f64>) -> Option<Depth> {
     let contacts = &meadow.work.contacts[tile.contacts.start as usize..tile.contacts.end as usize];
     let depths = contacts.iter().map(|contact| {
         let part = &meadow.parts.parts[contact.part as usize];
-        let cube = part.cube.as_ref().filter(|_| contact.uses_cube);
         Depth {
             depth_m: part.solid.depth(contact.to.inverse_point(p)),
-            limit_m: cube.map_or(ANALYTIC_LIMIT_M, |cube| f64::from(cube.texel_m())),
+            limit_m: if contact.uses_cube {
+                part.texel_m(meadow.scene.solver.cube_resolution)
+            } else {
+                ANALYTIC_LIMIT_M
+            },
         }
     });
     depths.reduce(|a, b| if b.depth_m > a.depth_m { b } else { a })
