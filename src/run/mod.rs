@@ -2,6 +2,7 @@
 
 pub mod engine;
 mod exit;
+mod jitter;
 pub mod judge;
 pub mod junit;
 mod pass_times;
