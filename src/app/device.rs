@@ -25,12 +25,18 @@ enum EngineName {
 
 impl EngineArguments {
     /// What the user asks for.
-    pub fn choice(&self) -> EngineChoice {
-        match self.engine {
-            None if self.require_gpu => EngineChoice::Gpu,
-            None => EngineChoice::Auto,
-            Some(EngineName::Cpu) => EngineChoice::Cpu,
-            Some(EngineName::Gpu) => EngineChoice::Gpu,
+    ///
+    /// # Errors
+    ///
+    /// Options that contradict each other.
+    pub fn choice(&self) -> Result<EngineChoice, Failure> {
+        match (self.engine, self.require_gpu) {
+            (Some(EngineName::Cpu), true) => Err(Failure::Usage(
+                "--require-gpu and --engine cpu contradict each other: leave one out".into(),
+            )),
+            (Some(EngineName::Cpu), false) => Ok(EngineChoice::Cpu),
+            (Some(EngineName::Gpu), _) | (None, true) => Ok(EngineChoice::Gpu),
+            (None, false) => Ok(EngineChoice::Auto),
         }
     }
 
@@ -40,11 +46,7 @@ impl EngineArguments {
     ///
     /// Options that contradict each other; a missing adapter where one is asked for.
     pub fn open(&self) -> Result<Device, Failure> {
-        if self.require_gpu && matches!(self.engine, Some(EngineName::Cpu)) {
-            let text = "--require-gpu and --engine cpu contradict each other: leave one out";
-            return Err(Failure::Usage(text.into()));
-        }
-        let device = match self.choice() {
+        let device = match self.choice()? {
             EngineChoice::Cpu => Device::Processor,
             EngineChoice::Gpu => Device::graphics(Gpu::headless()?)?,
             EngineChoice::Auto => match Gpu::headless() {
