@@ -1,9 +1,6 @@
 //! Laws of the cpu engine, on whole scenes: what must hold whatever the scene looks like.
 
-#![allow(
-    clippy::expect_used,
-    reason = "a test says what it expects by failing"
-)]
+#![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
 
 use std::collections::BTreeMap;
 
@@ -91,7 +88,10 @@ fn tile_size_changes_no_plant() {
     assert!(whole.len() > 200, "{} plants", whole.len());
     for tile_m in [0.5, 2.0] {
         let sharded = with_tile(tile_m);
-        assert!(sharded.keys().eq(whole.keys()), "{tile_m} m: other plants touched");
+        assert!(
+            sharded.keys().eq(whole.keys()),
+            "{tile_m} m: other plants touched"
+        );
         for (root, plant) in &sharded {
             assert_eq!(plant.nodes, whole[root].nodes, "{tile_m} m, {root:?}");
         }
@@ -137,7 +137,10 @@ fn a_removed_body_leaves_nothing_after_the_recovery() {
         tick(&mut meadow, &mut grass).expect("a tick");
     }
     assert_eq!((meadow.tiles.len(), meadow.state_bytes()), (0, 0));
-    assert!((0..64).all(|slab| grass.slab(slab).is_none()), "slabs are given back");
+    assert!(
+        (0..64).all(|slab| grass.slab(slab).is_none()),
+        "slabs are given back"
+    );
 }
 
 #[test]
@@ -198,8 +201,15 @@ fn single_precision_stays_within_a_tenth_of_a_millimetre() {
         nodes += distances.len();
     }
     let rms = (squares / f64::from(nodes.max(1) as u32)).sqrt();
-    println!("rms {rms:e} m over {nodes} nodes, {flipped} of {} plants flipped", double.len());
+    println!(
+        "rms {rms:e} m over {nodes} nodes, {flipped} of {} plants flipped",
+        double.len()
+    );
     assert!(nodes > 2000);
     assert!(rms <= 1e-4, "{rms:e} m");
-    assert!(flipped * 100 <= double.len(), "{flipped} of {}", double.len());
+    assert!(
+        flipped * 100 <= double.len(),
+        "{flipped} of {}",
+        double.len()
+    );
 }

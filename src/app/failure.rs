@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::field::blade_shape::ShapeError;
 use crate::gpu::GpuError;
 use crate::render::RenderError;
-use crate::run::{Exit, StageError};
+use crate::run::{Exit, RunError, StageError};
 use crate::scene::SceneError;
 
 /// An error that ends a command. Printed once, by the program's main function.
@@ -19,6 +19,8 @@ pub enum Failure {
     Scene(#[from] SceneError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Run(#[from] RunError),
     #[error(transparent)]
     Stage(#[from] StageError),
     #[error("cannot write to stdout: {0}")]
@@ -33,6 +35,7 @@ impl Failure {
         match self {
             Self::Usage(_) => Exit::Usage,
             Self::Scene(_) => Exit::Invalid,
+            Self::Run(error) => exit_of_run(error),
             Self::Stage(error) => exit_of_stage(error),
             Self::Gpu(error) => exit_of_gpu(error),
             Self::Output(_) if self.is_closed_pipe() => Exit::Ok,
@@ -51,6 +54,15 @@ impl Failure {
     /// Whether the reader of stdout has had enough.
     pub fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe)
+    }
+}
+
+/// The exit code of a scenario that could not be run.
+pub fn exit_of_run(error: &RunError) -> Exit {
+    match error {
+        RunError::Meadow { .. } => Exit::Invalid,
+        RunError::Gpu { source, .. } => exit_of_gpu(source),
+        RunError::Rate(_) => Exit::Usage,
     }
 }
 

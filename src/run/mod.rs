@@ -1,5 +1,6 @@
 //! Running scenes: the clock, what is measured, what is judged, reports and benches.
 
+pub mod bench;
 pub mod engine;
 mod exit;
 mod jitter;

@@ -126,7 +126,7 @@ pub enum RunError {
 }
 
 impl RunError {
-    fn new(name: &str, source: impl Into<TickError>) -> Self {
+    pub(super) fn new(name: &str, source: impl Into<TickError>) -> Self {
         let name = name.to_owned();
         match source.into() {
             TickError::Meadow(source) => Self::Meadow { name, source },

@@ -9,6 +9,7 @@ use clap::Args;
 
 use super::scene_file;
 use crate::app::device::EngineArguments;
+use crate::app::failure::exit_of_run;
 use crate::app::progress::Progress;
 use crate::app::{Failure, complain};
 use crate::run::report::{Adapter, Report, Scenario};
@@ -140,11 +141,7 @@ fn run_one(
     match outcome {
         Ok(Ok(scenario)) => scenario,
         Ok(Err(error)) => {
-            let exit = match error {
-                RunError::Meadow { .. } => Exit::Invalid,
-                RunError::Gpu { .. } => Exit::Internal,
-                RunError::Rate(_) => Exit::Usage,
-            };
+            let exit = exit_of_run(&error);
             Scenario::broken(name, error.to_string(), exit)
         }
         Err(_) => {
