@@ -2,7 +2,9 @@
 
 mod cli;
 mod commands;
+mod device;
 mod failure;
+mod progress;
 
 use std::fmt::Display;
 use std::io::{self, Write};

@@ -1,8 +1,10 @@
 //! The commands: one file each, with its arguments and what it prints.
 
+pub mod bench;
 pub mod blade_shape;
 pub mod doctor;
 pub mod list;
+pub mod render;
 pub mod run;
 mod scene_file;
 mod schema;
@@ -22,6 +24,8 @@ pub fn run(command: Command) -> Result<Exit, Failure> {
     let out = &mut io::stdout().lock();
     match command {
         Command::Run(arguments) => run::run(&arguments, out),
+        Command::Render(arguments) => render::run(&arguments, out),
+        Command::Bench(arguments) => bench::run(&arguments, out),
         Command::BladeShape(arguments) => blade_shape::run(&arguments, out),
         Command::List(arguments) => list::run(&arguments, out),
         Command::Schema => schema::run(out),
