@@ -1,9 +1,9 @@
 // Blades of grass: strips along the plants' centre lines. Host: src/render/blades.rs.
 //
 // P15 sections 2.3 and 2.4. A resting plant is made here from its seed; one in an active tile
-// takes its nodes from the simulation. Deviations: the light that neighbours leave depends on the
-// place along the blade, not on the height above the ground, so that pressed grass stays
-// readable; a blade thinner than a pixel is widened and made as much more transparent, so that
+// takes its nodes from the simulation. A plant is drawn as a tuft: besides the simulated blade it
+// may have companions, which take their shape and motion from it. Deviations: light is computed
+// per vertex; a blade thinner than a pixel is widened and made as much more transparent, so that
 // the cover of a far meadow does not flicker.
 #import "shared/frame.wgsl"
 #import "shared/light.wgsl"
@@ -11,6 +11,7 @@
 #import "shared/plant.wgsl"
 #import "shared/pose.wgsl"
 #import "shared/shadow.wgsl"
+#import "shared/state.wgsl"
 #import "shared/wind.wgsl"
 
 struct BladeLook {
@@ -43,7 +44,7 @@ struct DrawnTile {
 @group(3) @binding(0) var<uniform> blade_look: BladeLook;
 @group(3) @binding(1) var<storage, read> bands: array<Band>;
 @group(3) @binding(2) var<storage, read> drawn_tiles: array<DrawnTile>;
-// Node j + 1 of place p in slab s at (s * plants_per_tile + p) * segments + j.
+// Nodes of the plants in active tiles, as `recover` leaves them: a row per node, root first.
 @group(3) @binding(3) var<storage, read> active_nodes: array<vec4f>;
 @group(3) @binding(4) var base_colour: texture_2d<f32>;
 @group(3) @binding(5) var base_sampler: sampler;
@@ -68,26 +69,15 @@ fn taper(along: f32) -> f32 {
         * (1.0 - 0.35 * along);
 }
 
-fn active_node(slab: u32, place: u32, node: u32) -> vec3f {
-    let first = (slab * field.plants_per_tile + place) * field.segments;
-    return active_nodes[first + node - 1u].xyz;
-}
-
 fn pose_node(tile: TileRecord, plant: Plant, place: u32, node: u32) -> PoseNode {
     if tile.slab == NO_SLAB {
         return wind_pose_at(plant, wind_bend(tile, plant), node);
     }
-    var at = plant.root;
-    if node > 0u {
-        at = active_node(tile.slab, place, node);
-    }
+    let root = plant_row(tile.slab, place);
     // The segment above, or the last one at the tip.
     let upper = min(node + 1u, field.segments);
-    var lower = plant.root;
-    if upper > 1u {
-        lower = active_node(tile.slab, place, upper - 1u);
-    }
-    return PoseNode(at, unit_or(active_node(tile.slab, place, upper) - lower, UP));
+    let along = active_nodes[root + upper].xyz - active_nodes[root + upper - 1u].xyz;
+    return PoseNode(active_nodes[root + node].xyz, unit_or(along, UP));
 }
 
 // A blade of a plant's tuft: 0 is the simulated one, the others stand by it.
@@ -199,7 +189,11 @@ fn blade_vertex(
     // A blade is bent across, along its midrib.
     let bent_normal = normalize(normal + across * (0.45 * side));
     let rgb = plant_rgb(drawn.tile, plant);
-    let radiance = blade_radiance(rgb, bent_normal, along, position);
+    // How deep in the grass, by height above the ground: a pressed blade lies in its neighbours'
+    // shade. A part by place along the blade keeps the roots dark under grass that lies flat.
+    let height = saturate(reached.y * blade.size / (0.75 * field.reach_m));
+    let top = mix(along, height, 0.85);
+    let radiance = blade_radiance(rgb, bent_normal, along, 1.0 - top, position);
     let clip = frame.clip_from_eye * vec4f(position, 1.0);
     return BladePoint(clip, through_air(radiance, position), 1.0 / widened);
 }
@@ -213,25 +207,34 @@ fn transmitted(towards_sun: f32, thickness: f32) -> f32 {
 }
 
 // Eq. 14, per vertex: a blade is a few pixels wide.
-fn blade_radiance(rgb: vec3f, side_normal: vec3f, along: f32, position: vec3f) -> vec3f {
+fn blade_radiance(
+    rgb: vec3f,
+    side_normal: vec3f,
+    along: f32,
+    below_top: f32,
+    position: vec3f,
+) -> vec3f {
     let to_eye = -normalize(position);
     let normal = select(side_normal, -side_normal, dot(side_normal, to_eye) < 0.0);
     let sun = frame.sun_direction;
     // Reeves and Blau: neighbours leave less light further down.
-    let depth = blade_look.cover * (1.0 - along) * (1.0 - along);
-    let sky_open = 1.0 - 0.75 * depth;
-    let sun_open = exp(-2.2 * depth) * sun_reaches_cheaply(position + UP * 0.01);
+    let depth = blade_look.cover * pow(below_top, 1.4);
+    let sky_open = 1.0 - 0.85 * depth;
+    let sun_open = exp(-3.6 * depth) * sun_reaches_cheaply(position + UP * 0.01);
     // The ground's colour at the root, a paler tip.
-    let surface = rgb * mix(0.65, 1.2, along);
-    // The diffuse normal leans towards the sky: a single strip stands for a curved blade.
+    let surface = rgb * mix(0.8, 1.25, along);
+    // The diffuse normal leans a little towards the sky: a single strip stands for a curved blade.
+    // More would take the light off pressed grass, whose blades do face the sky.
     let facing = dot(normal, sun);
-    let soft = max(dot(normalize(normal + UP * 0.35), sun), 0.0);
+    let soft = max(dot(normalize(normal + UP * 0.12), sun), 0.0);
     let through = transmitted(facing, 0.4) * 2.0;
     let mirrored = reflect(-sun, normal);
     let glint = pow(max(dot(to_eye, mirrored), 0.0), 18.0) * 0.10 * step(0.0, facing);
+    let sheen = ambient_light(reflect(-to_eye, normal)) * (0.05 * sky_open);
     let direct = surface * soft + surface * vec3f(1.25, 1.15, 0.45) * through + vec3f(glint);
     return frame.sun_rgb * sun_open * direct
-        + ambient_light(normalize(normal + UP * 0.5)) * sky_open * surface;
+        + ambient_light(normalize(normal + UP * 0.25)) * sky_open * surface
+        + sheen;
 }
 
 @fragment

@@ -1,6 +1,8 @@
 //! Scenes and assets that are wrong: each is refused with a sentence that names file, line,
 //! column, key and what would be right, and none makes the program panic or take much memory.
 
+#![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
+
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::fs;
 use std::path::PathBuf;

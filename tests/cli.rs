@@ -1,5 +1,6 @@
 //! The program from outside: exit codes, what goes to stdout, closed pipes.
 
+#![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
 #![cfg(feature = "app")]
 
 use std::path::PathBuf;

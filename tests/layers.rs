@@ -1,5 +1,7 @@
 //! The layers' arrows run one way, the three files of a pass share a stem, files stay short.
 
+#![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,8 @@
 //! Every shader is valid and agrees with its Rust structs, checked without a graphics device.
 //! Each test lists all its failures at once.
 
+#![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;

@@ -5,16 +5,16 @@ use wgpu::BufferUsages;
 
 use crate::field::TileId;
 use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::sim::Meadow;
 use crate::sim::cpu::poses;
-use crate::sim::meadow::Meadow;
-use crate::sim::slab::Slab;
+use crate::sim::measure::GrassState;
 
-/// A copy of what an engine on the processor knows of its active tiles, for drawing.
+/// A copy of what an engine on the processor knows of its active tiles, for drawing. It is laid
+/// out like [`GpuGrass::drawn`](crate::gpu::GpuGrass::drawn).
 #[derive(Debug)]
 pub struct ActiveNodes {
-    /// As [`BladesInput::active_nodes`](super::BladesInput) wants it.
     pub nodes: Buffer<[f32; 4]>,
-    /// Active tiles with their slabs, in the order of their ids.
+    /// Active tiles with their places in `nodes`, in the order of their ids.
     pub tiles: Vec<(TileId, u32)>,
 }
 
@@ -28,39 +28,36 @@ impl ActiveNodes {
         })
     }
 
-    /// Copies the poses of all active tiles as they are after the last tick. `slab` gives the
-    /// state of a slab in use.
+    /// Copies the poses of all active tiles as they are after the last tick.
     ///
     /// # Errors
     /// More active tiles than the device can bind the nodes of.
-    pub fn copy<'a>(
+    pub fn copy(
         &mut self,
         gpu: &Gpu,
         meadow: &Meadow,
-        slab: impl Fn(u32) -> Option<&'a Slab<f32>> + Sync,
+        state: &(impl GrassState<f32> + Sync),
     ) -> Result<(), GpuError> {
-        let field = &meadow.field;
-        let segments = field.table.segments as usize;
+        let (field, work) = (&meadow.field, &meadow.work);
+        let rows = field.table.segments as usize + 1;
         let plants = field.grid.plants_per_tile();
-        let per_tile = plants as usize * segments;
-        let work = &meadow.work;
+        let step_over_t = meadow.step_over_t() as f32;
         // Tiles are packed anew at every copy, so that the buffer follows the active tiles.
-        let mut nodes = vec![[0.0; 4]; work.tiles.len() * per_tile];
+        let mut nodes = vec![[0.0; 4]; work.tiles.len() * plants as usize * rows];
         nodes
-            .par_chunks_exact_mut(per_tile.max(1))
+            .par_chunks_exact_mut((plants as usize * rows).max(1))
             .zip(&work.tiles)
             .for_each(|(out, tile)| {
-                let Some(state) = slab(tile.slab) else {
+                let Some(slab) = state.slab(tile.slab) else {
                     return;
                 };
-                let step_over_t = meadow.step_over_t() as f32;
-                for (place, out) in (0..plants).zip(out.chunks_exact_mut(segments)) {
+                for (place, out) in (0..plants).zip(out.chunks_exact_mut(rows)) {
                     let Some(plant) = field.plant(&tile.anchor, tile.tile, place) else {
                         continue;
                     };
-                    let (_, pose) = poses(field, work, step_over_t, tile, &plant, state, place);
-                    for (node, out) in pose[1..].iter().zip(out) {
-                        *out = [node.x, node.y, node.z, 0.0];
+                    let (_, pose) = poses(field, work, step_over_t, tile, &plant, slab, place);
+                    for (node, out) in pose.iter().zip(out) {
+                        *out = [node.x, node.y, node.z, 1.0];
                     }
                 }
             });

@@ -145,8 +145,9 @@ pub struct BladesInput<'a> {
     pub wind: &'a WindNow,
     /// Active tiles with their slabs, in the order of their ids.
     pub active: &'a [(TileId, u32)],
-    /// Nodes of the active tiles' plants in their anchors: node j + 1 of place p in slab s at
-    /// (s · plants per tile + p) · segments + j. The fourth number is not read.
+    /// Nodes of the active tiles' plants in their anchors, as
+    /// [`GpuGrass::drawn`](crate::gpu::GpuGrass::drawn) or [`ActiveNodes`](super::ActiveNodes)
+    /// lays them out: a row per node, root first.
     pub active_nodes: &'a Buffer<[f32; 4]>,
     pub detail: BladeDetail,
 }

@@ -90,7 +90,7 @@ impl Renderer {
         look: &GroundLook<'_>,
         shapes: &[RigidShape],
     ) -> Result<(), RenderError> {
-        let colour = GroundTexture::new(gpu, look)?;
+        let colour = GroundTexture::new(gpu, look.map)?;
         let canopy = Canopy::of(field);
         self.terrain
             .set_ground(gpu, &field.ground, &colour, look.soil_rgb, canopy)?;

@@ -1,19 +1,14 @@
 //! The colours of the ground, as a texture that the ground and the plants on it share.
 
 use crate::gpu::Gpu;
+use crate::terrain::ColourMap;
 
 use super::error::RenderError;
 
 /// How the ground looks.
 #[derive(Clone, Copy, Debug)]
 pub struct GroundLook<'a> {
-    /// Texels of the base-colour map along x and z, from the field's corner.
-    pub columns: u32,
-    pub rows: u32,
-    /// Side of a texel, in metres.
-    pub texel_m: f64,
-    /// Red, green, blue (sRGB-encoded) and an unused byte, row by row from the smallest z.
-    pub rgba8: &'a [u8],
+    pub map: &'a ColourMap,
     /// Colour of bare earth, linear RGB.
     pub soil_rgb: [f32; 3],
 }
@@ -34,8 +29,8 @@ impl GroundTexture {
     ///
     /// # Errors
     /// A size the device cannot hold, or bytes that do not fit the size.
-    pub(super) fn new(gpu: &Gpu, look: &GroundLook<'_>) -> Result<Self, RenderError> {
-        let (width, height) = (look.columns, look.rows);
+    pub(super) fn new(gpu: &Gpu, map: &ColourMap) -> Result<Self, RenderError> {
+        let (width, height) = (map.columns, map.rows);
         let limit = gpu.device.limits().max_texture_dimension_2d;
         if width == 0 || height == 0 || width > limit || height > limit {
             return Err(RenderError::BadInput {
@@ -44,10 +39,10 @@ impl GroundTexture {
                 wanted: "give each side 1 texel to the limit",
             });
         }
-        if look.rgba8.len() as u64 != u64::from(width) * u64::from(height) * 4 {
+        if map.rgba8.len() as u64 != u64::from(width) * u64::from(height) * 4 {
             return Err(RenderError::BadInput {
                 what: "the base-colour map",
-                found: format!("{} bytes for {width} x {height} texels", look.rgba8.len()),
+                found: format!("{} bytes for {width} x {height} texels", map.rgba8.len()),
                 wanted: "give four bytes per texel",
             });
         }
@@ -70,7 +65,7 @@ impl GroundTexture {
         })?;
         gpu.queue.write_texture(
             texture.as_image_copy(),
-            look.rgba8,
+            &map.rgba8,
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
                 bytes_per_row: Some(width * 4),
@@ -90,8 +85,8 @@ impl GroundTexture {
         Ok(Self {
             view: texture.create_view(&Default::default()),
             sampler,
-            size_m: [width, height].map(|n| (f64::from(n) * look.texel_m) as f32),
-            mean_rgb: mean_rgb(look.rgba8),
+            size_m: [width, height].map(|n| (f64::from(n) * map.texel_m) as f32),
+            mean_rgb: mean_rgb(&map.rgba8),
         })
     }
 }

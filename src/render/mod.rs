@@ -10,6 +10,7 @@ mod camera;
 mod error;
 mod frame;
 mod ground_look;
+mod meadow_view;
 mod overlay;
 mod picture;
 mod pipeline;
@@ -27,13 +28,13 @@ pub use camera::{Frustum, View};
 pub use error::RenderError;
 pub use frame::{FrameInput, Renderer};
 pub use ground_look::GroundLook;
+pub use meadow_view::{active_slabs, bodies_at, scene_view, tile_marks};
 pub use overlay::{TileMark, TileTone};
 pub use picture::{Picture, PictureTarget};
 pub use sky::{Daylight, Sun};
 pub use tonemap::Exposure;
 
 use crate::gpu::GpuStruct;
-use crate::gpu::field_data::{NO_SLAB, TileRecord};
 use crate::gpu::layout::StructLayout;
 use crate::gpu::wgsl::WgslFile;
 use crate::wgsl_file;
@@ -50,7 +51,7 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/noise.wgsl"),
     wgsl_file!("shared/screen.wgsl"),
     wgsl_file!("shared/shadow.wgsl"),
-    wgsl_file!("blades.wgsl", NO_SLAB, TUFT_RADIUS_M, TUFT_TURNS),
+    wgsl_file!("blades.wgsl", TUFT_RADIUS_M, TUFT_TURNS),
     wgsl_file!("bodies.wgsl"),
     wgsl_file!("overlay.wgsl"),
     wgsl_file!("sky.wgsl"),
@@ -65,7 +66,6 @@ pub fn layouts() -> Vec<StructLayout> {
         blades::BladeLook::layout(),
         blades::Band::layout(),
         blades::DrawnTile::layout(),
-        TileRecord::layout(),
         bodies::BodyRecord::layout(),
         overlay::OverlayBox::layout(),
         terrain::Ground::layout(),

@@ -1,6 +1,7 @@
 //! Expectations: each is measured during the run and compared with its limit.
 
 use crate::base::Real;
+use crate::gpu::GpuError;
 use crate::scene::Expectation;
 use crate::sim::Meadow;
 
@@ -48,9 +49,13 @@ impl Judge {
     }
 
     /// After every sub-step: what must be gathered all along, and what is due now.
-    pub fn tick(&mut self, meadow: &Meadow, engine: &mut Engine) {
+    ///
+    /// # Errors
+    ///
+    /// The engine's.
+    pub fn tick(&mut self, meadow: &Meadow, engine: &mut Engine) -> Result<(), GpuError> {
         if self.verdict.is_some() {
-            return;
+            return Ok(());
         }
         if let Some((body, swept)) = &mut self.swept {
             swept.tick(meadow, *body);
@@ -64,7 +69,7 @@ impl Judge {
                 at_least_deg,
                 at_most_deg,
             } if due(*at_s) => {
-                let plants = engine.near(meadow, *near_m, *within_m);
+                let plants = engine.near(meadow, *near_m, *within_m)?;
                 let leans: Vec<f64> = plants.iter().map(|p| p.lean_rad().to_degrees()).collect();
                 let what = format!("plants within {within_m} m of {near_m:?} lean");
                 Some(mean_verdict(
@@ -83,7 +88,7 @@ impl Judge {
                 at_least_m,
                 at_most_m,
             } if due(*at_s) => {
-                let plants = engine.near(meadow, *near_m, *within_m);
+                let plants = engine.near(meadow, *near_m, *within_m)?;
                 let offsets: Vec<f64> = plants.iter().map(|p| p.offset_m()).collect();
                 let what = format!("plants within {within_m} m of {near_m:?} are off");
                 Some(mean_verdict(
@@ -112,9 +117,10 @@ impl Judge {
                 self.swept.as_ref(),
                 *at_least,
                 *at_s,
-            )),
+            )?),
             _ => None,
         };
+        Ok(())
     }
 
     /// The verdict at the end of the run.
@@ -298,29 +304,29 @@ fn imprint(
     swept: Option<&(u32, Swept)>,
     at_least: f64,
     at_s: f64,
-) -> Verdict {
+) -> Result<Verdict, GpuError> {
     let what = format!("imprint of `{body}` overlaps its path");
     let Some((id, swept)) = swept else {
-        return Verdict {
+        return Ok(Verdict {
             measured: None,
             at_s: Some(at_s),
             reason: Some("no body of that name is in the scene".into()),
             ..verdict(what, false, 0.0, at_least, "")
-        };
+        });
     };
     // Only what happened within half the recovery time counts, so that no tile of it rests yet;
     // whether it was swept and bent may have been told a little earlier.
     let (recent, all) = (meadow.recovery_ticks() / 2, meadow.recovery_ticks());
-    let bent_lately = engine.bent(meadow, *id, recent, BENT_M);
+    let bent_lately = engine.bent(meadow, *id, recent, BENT_M)?;
     let either = &swept.since(meadow.ticks, recent) | &bent_lately;
-    let both = &swept.since(meadow.ticks, all) & &engine.bent(meadow, *id, all, BENT_M);
+    let both = &swept.since(meadow.ticks, all) & &engine.bent(meadow, *id, all, BENT_M)?;
     let both = either.intersection(&both).count() as f64;
     let either = either.len() as f64;
     let overlap = if either > 0.0 { both / either } else { 0.0 };
-    Verdict {
+    Ok(Verdict {
         at_s: Some(at_s),
         ..verdict(what, overlap >= at_least, overlap, at_least, "")
-    }
+    })
 }
 
 fn state_hash(meadow: &Meadow, engine: &Engine, is: &str) -> Verdict {

@@ -1,6 +1,6 @@
 //! How fast a plant rises again: one that was let go is followed until it is back.
 
-use crate::field::TileId;
+use crate::gpu::GpuError;
 use crate::sim::Meadow;
 use crate::sim::measure::Standing;
 use crate::sim::recover::offset_left;
@@ -37,17 +37,22 @@ pub type Passed = [Option<f64>; 3];
 
 impl Release {
     /// Takes in the state at the end of a frame.
-    pub fn frame(&mut self, meadow: &Meadow, engine: &mut Engine) {
+    ///
+    /// # Errors
+    ///
+    /// The engine's.
+    pub fn frame(&mut self, meadow: &Meadow, engine: &mut Engine) -> Result<(), GpuError> {
         match &mut self.followed {
             Some(followed) if followed.is_back() => {}
             Some(followed) => {
-                if followed.touched_again(meadow, engine) {
+                if followed.touched_again(meadow, engine)? {
                     self.followed = None;
                 }
             }
-            None => self.followed = self.just_released(meadow, engine),
+            None => self.followed = self.just_released(meadow, engine)?,
         }
         self.last_tick = meadow.ticks;
+        Ok(())
     }
 
     /// When the weight t³ of the stored offset had fallen: the law of the recovery itself.
@@ -62,24 +67,30 @@ impl Release {
     }
 
     /// A plant let go since the last frame; one touched in this very sub-step is still held.
-    fn just_released(&self, meadow: &Meadow, engine: &mut Engine) -> Option<Followed> {
+    fn just_released(
+        &self,
+        meadow: &Meadow,
+        engine: &mut Engine,
+    ) -> Result<Option<Followed>, GpuError> {
         let just_now = self.last_tick.max(1)..meadow.ticks;
-        let tiles: Vec<TileId> = meadow.work.tiles.iter().map(|tile| tile.tile).collect();
-        let plant = tiles.into_iter().find_map(|tile| {
-            let field = &meadow.field;
-            let [low, high] = field.grid.tile_bounds(tile, &field.ground);
+        let field = &meadow.field;
+        let half = 0.5 * f64::from(field.grid.tile_m());
+        for tile in &meadow.work.tiles {
+            let [low, high] = field.grid.tile_bounds(tile.tile, &field.ground);
             let middle_m = [0, 1].map(|a| 0.5 * (low[a] + high[a]));
-            let half = 0.5 * f64::from(field.grid.tile_m());
-            let mut plants = engine.near(meadow, middle_m, half).into_iter();
-            plants.find(|plant| just_now.contains(&plant.touched_at) && tip_m(plant) > WORTH_M)
-        })?;
-        Some(Followed {
-            root_m: plant.root_in_world(),
-            released_at: plant.touched_at,
-            tip_m: tip_m(&plant) / left(meadow, plant.touched_at).max(1e-3),
-            weight: [None; 3],
-            tip: [None; 3],
-        })
+            let mut plants = engine.near(meadow, middle_m, half)?.into_iter();
+            let let_go = plants.find(|p| just_now.contains(&p.touched_at) && tip_m(p) > WORTH_M);
+            if let Some(plant) = let_go {
+                return Ok(Some(Followed {
+                    root_m: plant.root_in_world(),
+                    released_at: plant.touched_at,
+                    tip_m: tip_m(&plant) / left(meadow, plant.touched_at).max(1e-3),
+                    weight: [None; 3],
+                    tip: [None; 3],
+                }));
+            }
+        }
+        Ok(None)
     }
 }
 
@@ -89,8 +100,8 @@ impl Followed {
     }
 
     /// Notes what is left now; true if something touched the plant.
-    fn touched_again(&mut self, meadow: &Meadow, engine: &mut Engine) -> bool {
-        let plants = engine.near(meadow, self.root_m, SAME_ROOT_M);
+    fn touched_again(&mut self, meadow: &Meadow, engine: &mut Engine) -> Result<bool, GpuError> {
+        let plants = engine.near(meadow, self.root_m, SAME_ROOT_M)?;
         // A tile at rest has no plants to show: they stand in the wind pose.
         let (touched_at, tip) = plants
             .first()
@@ -99,7 +110,7 @@ impl Followed {
         let since_s = f64::from(age) * meadow.scene.solver.substep_s;
         note(&mut self.weight, left(meadow, self.released_at), since_s);
         note(&mut self.tip, tip / self.tip_m, since_s);
-        touched_at > self.released_at
+        Ok(touched_at > self.released_at)
     }
 }
 

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use crate::gpu::{Gpu, GpuError, GrassKernels, TickError};
 use crate::scene::LoadedScene;
 use crate::sim::measure::Snapshot;
 use crate::sim::{Meadow, MeadowError};
 
-use super::engine::{Engine, EngineChoice};
+use super::engine::Engine;
 use super::judge::{Judge, Verdict};
 use super::pass_times::PassTimes;
 use super::timeline::Timeline;
@@ -15,7 +16,6 @@ use super::watch::Watch;
 /// How to run a scenario. The default runs it as the scene says.
 #[derive(Clone, Debug)]
 pub struct RunOptions {
-    pub engine: EngineChoice,
     /// Frames per second of the run; results do not depend on it.
     pub hz: f64,
     /// Sub-step instead of the scene's, in seconds.
@@ -27,7 +27,6 @@ pub struct RunOptions {
 impl Default for RunOptions {
     fn default() -> Self {
         Self {
-            engine: EngineChoice::Auto,
             hz: 60.0,
             substep_s: None,
             seed: None,
@@ -65,13 +64,58 @@ pub struct Frame<'a> {
     pub snapshot: &'a Snapshot,
 }
 
+/// What a run computes on.
+#[derive(Clone, Debug)]
+pub enum Device {
+    /// The processor, for the cpu engine.
+    Processor,
+    /// A graphics device with its compiled passes, for the gpu engine.
+    Graphics(Gpu, GrassKernels),
+}
+
+impl Device {
+    /// Compiles the passes for a graphics device.
+    ///
+    /// # Errors
+    ///
+    /// A shader that the driver refuses.
+    pub fn graphics(gpu: Gpu) -> Result<Self, GpuError> {
+        let kernels = GrassKernels::new(&gpu)?;
+        Ok(Self::Graphics(gpu, kernels))
+    }
+
+    /// An engine for a meadow.
+    ///
+    /// # Errors
+    ///
+    /// A meadow larger than the device can bind.
+    pub fn engine(&self, meadow: &mut Meadow) -> Result<Engine, GpuError> {
+        match self {
+            Self::Processor => Ok(Engine::cpu()),
+            Self::Graphics(gpu, kernels) => Engine::gpu(gpu, kernels, meadow),
+        }
+    }
+}
+
 /// Why a scenario could not be run.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     #[error("{name}: {source}")]
     Meadow { name: String, source: MeadowError },
+    #[error("{name}: {source}")]
+    Gpu { name: String, source: GpuError },
     #[error("--hz is {0}; it must be a number of frames per second from 1 to 10000")]
     Rate(f64),
+}
+
+impl RunError {
+    fn new(name: &str, source: impl Into<TickError>) -> Self {
+        let name = name.to_owned();
+        match source.into() {
+            TickError::Meadow(source) => Self::Meadow { name, source },
+            TickError::Gpu(source) => Self::Gpu { name, source },
+        }
+    }
 }
 
 /// Runs a scene to its end. `each_frame` is called at the end of every frame.
@@ -82,22 +126,20 @@ pub enum RunError {
 pub fn run_scene(
     loaded: &LoadedScene,
     options: &RunOptions,
-    engine: Engine,
+    device: &Device,
     mut each_frame: impl FnMut(&Frame<'_>),
 ) -> Result<Outcome, RunError> {
     if !(options.hz >= 1.0 && options.hz <= 10_000.0) {
         return Err(RunError::Rate(options.hz));
     }
-    let named = |source| RunError::Meadow {
-        name: loaded.name.clone(),
-        source,
-    };
+    let name = loaded.name.as_str();
     let mut scene = loaded.scene.clone();
     scene.solver.substep_s = options.substep_s.unwrap_or(scene.solver.substep_s);
     scene.grass.seed = options.seed.unwrap_or(scene.grass.seed);
     let duration_s = scene.duration_s;
-    let mut meadow = Meadow::new(scene, &loaded.assets).map_err(named)?;
-    let mut engine = engine;
+    let mut meadow =
+        Meadow::new(scene, &loaded.assets).map_err(|error| RunError::new(name, error))?;
+    let mut engine = (device.engine(&mut meadow)).map_err(|error| RunError::new(name, error))?;
     let mut judges: Vec<Judge> = meadow
         .scene
         .expect
@@ -111,13 +153,19 @@ pub fn run_scene(
     let started = std::time::Instant::now();
     for frame in 0..frames {
         for _ in 0..timeline.advance(1.0 / options.hz) {
-            engine.tick(&mut meadow).map_err(named)?;
+            engine
+                .tick(&mut meadow)
+                .map_err(|error| RunError::new(name, error))?;
             passes.tick(&engine.pass_ms());
             for judge in &mut judges {
-                judge.tick(&meadow, &mut engine);
+                judge
+                    .tick(&meadow, &mut engine)
+                    .map_err(|error| RunError::new(name, error))?;
             }
         }
-        watch.frame(&meadow, &mut engine);
+        watch
+            .frame(&meadow, &mut engine)
+            .map_err(|error| RunError::new(name, error))?;
         each_frame(&Frame {
             done: (frame + 1) as f64 / frames as f64,
             meadow: &meadow,
@@ -129,13 +177,16 @@ pub fn run_scene(
         .into_iter()
         .map(|judge| judge.finish(&meadow, &engine, &watch))
         .collect();
+    let mut pass_ms = passes.median_ms();
+    let device_ms = engine.device_pass_ms().into_iter();
+    pass_ms.extend(device_ms.map(|(pass, ms)| (pass.to_owned(), ms)));
     Ok(Outcome {
         name: loaded.name.clone(),
         verdicts,
         watch,
         meadow,
         engine,
-        pass_ms: passes.median_ms(),
+        pass_ms,
         wall_s,
     })
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::base::statistics::quantile;
+use crate::gpu::GpuError;
 use crate::sim::Meadow;
 use crate::sim::measure::{Depth, Snapshot};
 
@@ -32,17 +33,21 @@ pub struct Watch {
 
 impl Watch {
     /// Takes in the state at the end of a frame.
-    pub fn frame(&mut self, meadow: &Meadow, engine: &mut Engine) {
+    ///
+    /// # Errors
+    ///
+    /// The engine's.
+    pub fn frame(&mut self, meadow: &Meadow, engine: &mut Engine) -> Result<(), GpuError> {
         if !meadow.tiles.is_empty() {
             self.last_active_s = Some(meadow.time_s());
         }
         let bodies = meadow.colliders().into_iter();
         self.colliders
             .extend(bodies.map(|(body, cube, analytic)| (body, (cube, analytic))));
-        let snapshot = engine.snapshot(meadow);
+        let snapshot = engine.snapshot(meadow)?;
         self.fold(&snapshot);
         self.last = snapshot;
-        self.release.frame(meadow, engine);
+        self.release.frame(meadow, engine)
     }
 
     fn fold(&mut self, frame: &Snapshot) {

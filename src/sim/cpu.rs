@@ -43,6 +43,9 @@ struct Touched {
     sweeps: u32,
 }
 
+/// A tile whose touched plants respond, with its slab taken out of the pool meanwhile.
+type Job<'a, R> = (&'a TileWork, &'a [Touched], Box<Slab<R>>);
+
 /// Time spent in each pass since the start.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PassTimes {
@@ -121,14 +124,14 @@ impl<R: Real> Grass<R> {
         let start = Instant::now();
         let settings = RelaxSettings::new(&meadow.scene.solver);
         let grown = &self.grown;
-        let mut jobs: Vec<(&TileWork, &Vec<Touched>, Box<Slab<R>>)> = meadow
+        let mut jobs: Vec<Job<R>> = meadow
             .work
             .tiles
             .iter()
             .zip(&self.touched)
             .filter(|(_, touched)| !touched.is_empty())
             .filter_map(|(tile, touched)| {
-                Some((tile, touched, self.slabs[tile.slab as usize].take()?))
+                Some((tile, &touched[..], self.slabs[tile.slab as usize].take()?))
             })
             .collect();
         let results: Vec<(u64, u32)> = jobs

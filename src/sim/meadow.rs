@@ -119,7 +119,7 @@ impl Meadow {
 
     /// Ticks from the last contact to the wind pose.
     pub fn recovery_ticks(&self) -> u32 {
-        (f64::from(self.scene.solver.recovery_s) / self.scene.solver.substep_s).ceil() as u32
+        (self.scene.solver.recovery_s / self.scene.solver.substep_s).ceil() as u32
     }
 
     /// Δt/T of the recovery.
@@ -198,9 +198,8 @@ impl Meadow {
             }
         }
         let tiles: Vec<TileId> = near.keys().copied().collect();
-        self.changes = self.tiles.update(&tiles, self.ticks, {
-            (f64::from(solver.recovery_s) / solver.substep_s).ceil() as u32
-        });
+        let recovery_ticks = self.recovery_ticks();
+        self.changes = self.tiles.update(&tiles, self.ticks, recovery_ticks);
         let mut work = Work {
             now: self.ticks,
             wind: self.wind_at(f64::from(self.ticks) * solver.substep_s),

@@ -18,8 +18,9 @@ use super::relax::largest_strain;
 use super::slab::Slab;
 use super::work::TileWork;
 
-/// A node this close to the ground lies on it, in metres.
-const ON_GROUND_M: f64 = 1e-4;
+/// A node this close to the ground lies on it, in metres: on a slope the last segment is laid down by
+/// the height at its end before it is turned.
+const ON_GROUND_M: f64 = 1e-3;
 
 /// Where the grass's state can be read.
 pub trait GrassState<R: Real> {
@@ -210,9 +211,20 @@ impl Snapshot {
                 continue;
             }
             let ground: f64 = ground_in_anchor(&meadow.field.ground, &tile.anchor, p.x, p.z);
+            let mut excess = found.depth_m;
             if p.y <= ground + ON_GROUND_M {
+                // A pinch: the ground wins, so what the body and the ground share there is no fault,
+                // nor is the height by which the node lies above it.
+                let on_ground = Vec3::new(p.x, ground, p.z);
+                let shared = deepest_in(meadow, tile, on_ground).map_or(0.0, |d| d.depth_m);
+                excess -= shared.max(0.0) + (p.y - ground).max(0.0);
                 self.pinched += 1;
-            } else {
+            }
+            if excess > 0.0 {
+                let found = Depth {
+                    depth_m: excess,
+                    ..found
+                };
                 self.depths_m.push(found.depth_m);
                 self.worst = self.worst.worse(found);
             }
@@ -239,10 +251,13 @@ fn deepest_in(meadow: &Meadow, tile: &TileWork, p: Vec3<f64>) -> Option<Depth> {
     let contacts = &meadow.work.contacts[tile.contacts.start as usize..tile.contacts.end as usize];
     let depths = contacts.iter().map(|contact| {
         let part = &meadow.parts.parts[contact.part as usize];
-        let cube = part.cube.as_ref().filter(|_| contact.uses_cube);
         Depth {
             depth_m: part.solid.depth(contact.to.inverse_point(p)),
-            limit_m: cube.map_or(ANALYTIC_LIMIT_M, |cube| f64::from(cube.texel_m())),
+            limit_m: if contact.uses_cube {
+                part.texel_m(meadow.scene.solver.cube_resolution)
+            } else {
+                ANALYTIC_LIMIT_M
+            },
         }
     });
     depths.reduce(|a, b| if b.depth_m > a.depth_m { b } else { a })

@@ -23,6 +23,15 @@ pub struct Part {
     wants_cube: bool,
 }
 
+impl Part {
+    /// Longest edge of a texel of this part's depth cube, in metres.
+    pub fn texel_m(&self, resolution: u32) -> f64 {
+        let [low, high] = self.grown.bounds();
+        let size = high - low;
+        f64::from(size.x.max(size.y).max(size.z) / resolution as f32)
+    }
+}
+
 /// Every part of every shape, and which parts make up a shape.
 #[derive(Clone, Debug, Default)]
 pub struct Parts {
@@ -66,10 +75,8 @@ impl Parts {
             Collider::Cube => true,
             Collider::Analytic => false,
             Collider::Auto => {
-                let [low, high] = self.parts[part].grown.bounds();
-                let size = high - low;
-                let texel = size.x.max(size.y).max(size.z) / resolution as f32;
-                thinnest(&self.parts[part]) >= 2.0 * f64::from(texel)
+                let part = &self.parts[part];
+                thinnest(part) >= 2.0 * part.texel_m(resolution)
             }
         }
     }

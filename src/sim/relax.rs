@@ -229,7 +229,9 @@ impl<R: Real> Place<'_, R> {
             return to;
         }
         let rise = (height - from.y).clamp(-self.length, self.length);
-        let run = (self.length * self.length - rise * rise).max(R::ZERO).sqrt();
+        let run = (self.length * self.length - rise * rise)
+            .max(R::ZERO)
+            .sqrt();
         let sideways = vec3(rest.x, R::ZERO, rest.z).unit_or(vec3(R::ONE, R::ZERO, R::ZERO));
         let flat = vec3(to.x - from.x, R::ZERO, to.z - from.z).unit_or(sideways);
         from + flat * run + Vec3::UP * rise

@@ -12,11 +12,8 @@ use super::scene_file;
 use crate::app::{Failure, complain};
 use crate::run::report::{Report, Scenario};
 use crate::run::trace::Trace;
-use crate::run::{
-    Engine, EngineChoice, Exit, Frame, RunError, RunOptions, junit, run_scene, table,
-};
+use crate::run::{Device, Exit, Frame, RunError, RunOptions, junit, run_scene, table};
 use crate::scene::limits;
-use crate::sim::Grass;
 
 /// Run scenarios without a window and check their expectations
 #[derive(Args, Debug)]
@@ -93,10 +90,6 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
 }
 
 fn options(arguments: &Arguments) -> Result<RunOptions, Failure> {
-    let engine = match arguments.engine {
-        Some(EngineName::Cpu) => EngineChoice::Cpu,
-        None => EngineChoice::Auto,
-    };
     if let Some(substep_s) = arguments.substep {
         let limit = limits::SUBSTEP;
         if !(limit.min..=limit.max).contains(&substep_s) {
@@ -108,7 +101,6 @@ fn options(arguments: &Arguments) -> Result<RunOptions, Failure> {
         return Err(Failure::Usage(RunError::Rate(arguments.hz).to_string()));
     }
     Ok(RunOptions {
-        engine,
         hz: arguments.hz,
         substep_s: arguments.substep,
         seed: arguments.seed,
@@ -145,8 +137,8 @@ fn run_one(
         }
     };
     let outcome = catch_unwind(AssertUnwindSafe(|| {
-        let engine = Engine::Cpu(Grass::new());
-        run_scene(&loaded, options, engine, each_frame).map(|outcome| Scenario::of(&outcome))
+        run_scene(&loaded, options, &Device::Processor, each_frame)
+            .map(|outcome| Scenario::of(&outcome))
     }));
     bar.finish_and_clear();
     match outcome {
@@ -154,6 +146,7 @@ fn run_one(
         Ok(Err(error)) => {
             let exit = match error {
                 RunError::Meadow { .. } => Exit::Invalid,
+                RunError::Gpu { .. } => Exit::Internal,
                 RunError::Rate(_) => Exit::Usage,
             };
             Scenario::broken(name, error.to_string(), exit)

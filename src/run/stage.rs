@@ -1,0 +1,311 @@
+//! A scene that is simulated and drawn: what a window, a picture and an embedding program share.
+
+use crate::gpu::{Gpu, GpuError, GrassKernels, PassTimer, TickError};
+use crate::render::{
+    ActiveNodes, BladeCounts, BladeDetail, BladesInput, Exposure, FrameInput, GroundLook,
+    RenderError, Renderer, Sun, View, active_slabs, bodies_at, scene_view, tile_marks,
+};
+use crate::scene::{Action, Camera, LoadedScene};
+use crate::sim::{Meadow, MeadowError};
+use crate::terrain::ColourMap;
+
+use super::engine::{Engine, EngineChoice};
+use super::timeline::Timeline;
+
+/// Longest time that one displayed frame may add, in seconds: a window that was hidden does not
+/// have to catch up.
+const LONGEST_FRAME_S: f64 = 0.1;
+/// Passes of a frame that are timed.
+const DRAWN_PASSES: usize = 8;
+
+/// A scene with its engine, and the renderer that shows it.
+pub struct Stage {
+    loaded: LoadedScene,
+    meadow: Meadow,
+    engine: Engine,
+    /// What the cpu engine's grass is drawn from.
+    nodes: ActiveNodes,
+    renderer: Renderer,
+    kernels: GrassKernels,
+    timer: PassTimer,
+    timeline: Timeline,
+    /// Body shapes the renderer knows.
+    shapes: usize,
+    pub sun: Sun,
+    pub exposure: Exposure,
+    pub detail: BladeDetail,
+}
+
+/// Why a stage cannot be set or shown.
+#[derive(Debug, thiserror::Error)]
+pub enum StageError {
+    #[error(transparent)]
+    Meadow(#[from] MeadowError),
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    #[error("the scene has no camera '{name}'; it has {known}")]
+    UnknownCamera { name: String, known: String },
+}
+
+impl From<TickError> for StageError {
+    fn from(error: TickError) -> Self {
+        match error {
+            TickError::Meadow(error) => Self::Meadow(error),
+            TickError::Gpu(error) => Self::Gpu(error),
+        }
+    }
+}
+
+impl Stage {
+    /// Lays a scene out, for pictures of a format and size.
+    ///
+    /// # Errors
+    ///
+    /// A scene that cannot be laid out, or one that the device cannot hold.
+    pub fn new(
+        gpu: &Gpu,
+        loaded: &LoadedScene,
+        choice: EngineChoice,
+        format: wgpu::TextureFormat,
+        size: [u32; 2],
+    ) -> Result<Self, StageError> {
+        let mut renderer = Renderer::new(gpu, format, size)?;
+        let kernels = GrassKernels::new(gpu)?;
+        let (meadow, engine) = lay_out(gpu, &kernels, loaded, choice)?;
+        show(gpu, &mut renderer, &meadow)?;
+        Ok(Self {
+            nodes: ActiveNodes::new(gpu)?,
+            timer: PassTimer::new(gpu, DRAWN_PASSES),
+            timeline: new_timeline(&meadow),
+            shapes: meadow.bodies.shapes().len(),
+            sun: Sun::default(),
+            exposure: Exposure::default(),
+            detail: if gpu.adapter.is_software {
+                BladeDetail::software()
+            } else {
+                BladeDetail::default()
+            },
+            loaded: loaded.clone(),
+            meadow,
+            engine,
+            renderer,
+            kernels,
+        })
+    }
+
+    /// Puts another scene on the stage, or the same one at its start, and keeps what is compiled.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Stage::new`]; then the old scene goes on.
+    pub fn set_scene(
+        &mut self,
+        gpu: &Gpu,
+        loaded: &LoadedScene,
+        choice: EngineChoice,
+    ) -> Result<(), StageError> {
+        let (meadow, engine) = lay_out(gpu, &self.kernels, loaded, choice)?;
+        show(gpu, &mut self.renderer, &meadow)?;
+        self.timeline = new_timeline(&meadow);
+        self.shapes = meadow.bodies.shapes().len();
+        self.loaded = loaded.clone();
+        self.meadow = meadow;
+        self.engine = engine;
+        Ok(())
+    }
+
+    /// The scene as it was read.
+    pub fn loaded(&self) -> &LoadedScene {
+        &self.loaded
+    }
+
+    pub fn meadow(&self) -> &Meadow {
+        &self.meadow
+    }
+
+    pub fn engine(&self) -> &Engine {
+        &self.engine
+    }
+
+    /// Simulates one sub-step.
+    ///
+    /// # Errors
+    ///
+    /// An event of the script that cannot happen; what the device refuses.
+    pub fn tick(&mut self) -> Result<(), StageError> {
+        Ok(self.engine.tick(&mut self.meadow)?)
+    }
+
+    /// Simulates the sub-steps that are due after a displayed frame of `frame_s`, and tells how
+    /// many they were. A frame longer than a tenth of a second counts as that.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Stage::tick`].
+    pub fn advance(&mut self, frame_s: f64) -> Result<u32, StageError> {
+        let due = self.timeline.advance(frame_s);
+        for _ in 0..due {
+            self.tick()?;
+        }
+        Ok(due)
+    }
+
+    /// Seconds of displayed time that were not simulated, because frames took too long.
+    pub fn discarded_s(&self) -> f64 {
+        self.timeline.discarded_s
+    }
+
+    /// Lets something happen to the bodies or the wind now.
+    ///
+    /// # Errors
+    ///
+    /// An action that cannot be done; then nothing has changed.
+    pub fn act(&mut self, action: &Action) -> Result<(), StageError> {
+        Ok(self.meadow.act(action)?)
+    }
+
+    /// The view of a camera by its name, as of now. Without a name the scene's first camera; a
+    /// scene without cameras frames its bodies.
+    ///
+    /// # Errors
+    ///
+    /// `UnknownCamera`.
+    pub fn camera(&self, name: Option<&str>) -> Result<View, StageError> {
+        let cameras = &self.meadow.scene.cameras;
+        let camera = match name {
+            None => cameras.first(),
+            Some(name) => Some(named_camera(cameras, name)?),
+        };
+        Ok(scene_view(&self.meadow, camera))
+    }
+
+    /// Makes pictures of another size from now on; the same size costs nothing.
+    ///
+    /// # Errors
+    ///
+    /// A size the device cannot hold; the old one stays.
+    pub fn resize(&mut self, gpu: &Gpu, size: [u32; 2]) -> Result<(), StageError> {
+        Ok(self.renderer.resize(gpu, size)?)
+    }
+
+    /// Width and height of the pictures, in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.renderer.size()
+    }
+
+    /// Draws the scene as it is after the last sub-step; `overlay` adds boxes around tiles that
+    /// are awake.
+    ///
+    /// # Errors
+    ///
+    /// The device's.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        view: &View,
+        target: &wgpu::TextureView,
+        overlay: bool,
+    ) -> Result<(), StageError> {
+        self.take_in_shapes(gpu)?;
+        let meadow = &self.meadow;
+        match &mut self.engine {
+            Engine::Cpu(grass) => self.nodes.copy(gpu, meadow, grass)?,
+            Engine::Gpu(engine) => engine.grass.recover()?,
+        }
+        let slabs = active_slabs(meadow);
+        let (active, active_nodes) = match &self.engine {
+            Engine::Cpu(_) => (&self.nodes.tiles, &self.nodes.nodes),
+            Engine::Gpu(engine) => (&slabs, engine.grass.drawn()),
+        };
+        let marks = if overlay {
+            tile_marks(meadow)
+        } else {
+            Vec::new()
+        };
+        let input = FrameInput {
+            view,
+            sun: self.sun,
+            exposure: self.exposure,
+            // The grass is that of the last tick's end, and so are the bodies.
+            bodies: &bodies_at(meadow, 1.0),
+            blades: Some(BladesInput {
+                field: &meadow.field,
+                wind: &meadow.work.wind,
+                active,
+                active_nodes,
+                detail: self.detail,
+            }),
+            marks: &marks,
+            time_s: meadow.time_s(),
+        };
+        Ok(self.renderer.draw(gpu, &input, target, &mut self.timer)?)
+    }
+
+    /// What the last picture drew of the plants.
+    pub fn blade_counts(&self) -> BladeCounts {
+        self.renderer.blade_counts()
+    }
+
+    /// Median milliseconds of each pass of the simulation (on the device) and of drawing, over
+    /// the last frames; empty where the device has no timestamps.
+    pub fn pass_ms(&self) -> Vec<(&'static str, f64)> {
+        let mut passes = self.engine.device_pass_ms();
+        passes.extend(self.timer.medians_ms());
+        passes
+    }
+
+    /// Hands the renderer the shapes of bodies that came up since the last picture.
+    fn take_in_shapes(&mut self, gpu: &Gpu) -> Result<(), RenderError> {
+        let shapes = self.meadow.bodies.shapes();
+        if shapes.len() > self.shapes {
+            self.renderer.set_shapes(gpu, shapes)?;
+            self.shapes = shapes.len();
+        }
+        Ok(())
+    }
+}
+
+fn lay_out(
+    gpu: &Gpu,
+    kernels: &GrassKernels,
+    loaded: &LoadedScene,
+    choice: EngineChoice,
+) -> Result<(Meadow, Engine), StageError> {
+    let mut meadow = Meadow::new(loaded.scene.clone(), &loaded.assets)?;
+    let engine = if choice.is_gpu_on(gpu) {
+        Engine::gpu(gpu, kernels, &mut meadow)?
+    } else {
+        Engine::cpu()
+    };
+    Ok((meadow, engine))
+}
+
+fn show(gpu: &Gpu, renderer: &mut Renderer, meadow: &Meadow) -> Result<(), RenderError> {
+    let terrain = &meadow.scene.terrain;
+    let look = GroundLook {
+        map: &ColourMap::of(terrain, &meadow.field.ground),
+        soil_rgb: terrain.soil_rgb,
+    };
+    renderer.set_scene(gpu, &meadow.field, &look, meadow.bodies.shapes())
+}
+
+fn new_timeline(meadow: &Meadow) -> Timeline {
+    Timeline::limited(meadow.scene.solver.substep_s, LONGEST_FRAME_S)
+}
+
+fn named_camera<'a>(cameras: &'a [Camera], name: &str) -> Result<&'a Camera, StageError> {
+    let found = cameras.iter().find(|camera| camera.name == name);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = cameras.iter().map(|camera| camera.name.as_str()).collect();
+        StageError::UnknownCamera {
+            name: name.to_owned(),
+            known: if names.is_empty() {
+                "none".to_owned()
+            } else {
+                names.join(", ")
+            },
+        }
+    })
+}
