@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::field::blade_shape::ShapeError;
 use crate::gpu::GpuError;
-use crate::run::Exit;
+use crate::run::{Exit, StageError};
 use crate::scene::SceneError;
 
 /// An error that ends a command. Printed once, by the program's main function.
@@ -18,6 +18,11 @@ pub enum Failure {
     Scene(#[from] SceneError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Stage(#[from] StageError),
+    /// The platform refuses a window, for a reason in its own words.
+    #[error("no window: {0}")]
+    Window(String),
     #[error("cannot write to stdout: {0}")]
     Output(#[from] io::Error),
     #[error("cannot write {}: {source}", path.display())]
@@ -29,10 +34,14 @@ impl Failure {
     pub fn exit(&self) -> Exit {
         match self {
             Self::Usage(_) => Exit::Usage,
-            Self::Scene(_) => Exit::Invalid,
+            Self::Scene(_) | Self::Stage(StageError::Meadow(_)) => Exit::Invalid,
             Self::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }) => Exit::NoAdapter,
             Self::Output(_) if self.is_closed_pipe() => Exit::Ok,
-            Self::Gpu(_) | Self::Output(_) | Self::File { .. } => Exit::Internal,
+            Self::Gpu(_)
+            | Self::Stage(_)
+            | Self::Window(_)
+            | Self::Output(_)
+            | Self::File { .. } => Exit::Internal,
         }
     }
 

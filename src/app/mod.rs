@@ -3,6 +3,7 @@
 mod cli;
 mod commands;
 mod failure;
+mod window;
 
 use std::fmt::Display;
 use std::io::{self, Write};

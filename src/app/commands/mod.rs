@@ -6,6 +6,7 @@ pub mod list;
 pub mod run;
 mod scene_file;
 mod schema;
+pub mod view;
 
 use std::io;
 
@@ -18,9 +19,10 @@ use crate::run::Exit;
 /// # Errors
 ///
 /// The command's own; each knows its exit code.
-pub fn run(command: Command) -> Result<Exit, Failure> {
+pub fn run(command: Option<Command>) -> Result<Exit, Failure> {
     let out = &mut io::stdout().lock();
-    match command {
+    match command.unwrap_or_else(|| Command::View(view::Arguments::default())) {
+        Command::View(arguments) => view::run(arguments, out),
         Command::Run(arguments) => run::run(&arguments, out),
         Command::BladeShape(arguments) => blade_shape::run(&arguments, out),
         Command::List(arguments) => list::run(&arguments, out),

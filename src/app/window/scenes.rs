@@ -83,10 +83,10 @@ impl SceneList {
         }
     }
 
-    /// Goes to the scene `by` places down the list, around its ends.
-    pub fn go(&mut self, by: isize) {
+    /// The line `by` places down from the current one, around the list's ends.
+    pub fn line(&self, by: isize) -> usize {
         let count = self.entries.len() as isize;
-        self.current = (self.current as isize + by).rem_euclid(count) as usize;
+        (self.current as isize + by).rem_euclid(count) as usize
     }
 
     /// Adds a file unless the program has the same scene and nobody asked for the file.
@@ -157,10 +157,9 @@ mod tests {
     fn the_list_goes_around() {
         let mut list = SceneList::new(Some(Path::new("still")), &[]).expect("the scenes folder");
         let start = list.current;
-        list.go(-1);
+        list.current = list.line(-1);
         assert_ne!(list.current, start);
-        list.go(list.entries.len() as isize + 1);
-        assert_eq!(list.current, start);
+        assert_eq!(list.line(list.entries.len() as isize + 1), start);
     }
 
     #[test]

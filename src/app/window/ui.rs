@@ -112,9 +112,9 @@ impl Ui {
             pixels_per_point: painting.pixels_per_point,
         };
         // Only paint callbacks give command buffers of their own, and there are none.
-        let _ =
-            self.renderer
-                .update_buffers(device, queue, encoder, &painting.triangles, &screen);
+        let _ = self
+            .renderer
+            .update_buffers(device, queue, encoder, &painting.triangles, &screen);
         let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("panels"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -135,17 +135,5 @@ impl Ui {
         for id in painting.textures.free.drain() {
             self.renderer.free_texture(&id);
         }
-    }
-}
-
-impl Painting {
-    /// Takes in the pass of a frame that was skipped, whose textures later frames need.
-    pub fn after(mut self, skipped: Option<Self>) -> Self {
-        if let Some(mut skipped) = skipped {
-            let newer = std::mem::take(&mut self.textures);
-            skipped.textures.append(newer);
-            self.textures = std::mem::take(&mut skipped.textures);
-        }
-        self
     }
 }
