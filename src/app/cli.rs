@@ -2,19 +2,21 @@
 
 use clap::{Parser, Subcommand};
 
-use super::commands::{bench, blade_shape, list, render, run};
+use super::commands::{bench, blade_shape, list, render, run, view};
 
 /// Responsive grass: bodies press real imprints into a meadow.
 ///
-/// stdout carries the result only; logs and progress go to stderr.
+/// Without a command it opens the default meadow in a window. stdout carries the result only; logs
+/// and progress go to stderr.
 #[derive(Debug, Parser)]
-#[command(name = "sward", version, arg_required_else_help = true, after_help = EXIT_CODES)]
+#[command(name = "sward", version, after_help = EXIT_CODES)]
 pub struct Cli {
     /// Say more on stderr.
     #[arg(short, long, global = true)]
     pub verbose: bool,
+    /// `None` opens the window.
     #[command(subcommand)]
-    pub command: Command,
+    pub command: Option<Command>,
 }
 
 const EXIT_CODES: &str = "\
@@ -23,6 +25,7 @@ asset is invalid; 4 a needed adapter or feature is missing; 5 internal error.";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    View(view::Arguments),
     Run(run::Arguments),
     Render(render::Arguments),
     Bench(bench::Arguments),

@@ -23,6 +23,9 @@ pub enum Failure {
     Run(#[from] RunError),
     #[error(transparent)]
     Stage(#[from] StageError),
+    /// The platform refuses a window, for a reason in its own words.
+    #[error("no window: {0}")]
+    Window(String),
     #[error("cannot write to stdout: {0}")]
     Output(#[from] io::Error),
     #[error("cannot write {}: {source}", path.display())]
@@ -39,7 +42,7 @@ impl Failure {
             Self::Stage(error) => exit_of_stage(error),
             Self::Gpu(error) => exit_of_gpu(error),
             Self::Output(_) if self.is_closed_pipe() => Exit::Ok,
-            Self::Output(_) | Self::File { .. } => Exit::Internal,
+            Self::Window(_) | Self::Output(_) | Self::File { .. } => Exit::Internal,
         }
     }
 

@@ -5,6 +5,7 @@ mod commands;
 mod device;
 mod failure;
 mod progress;
+mod window;
 
 use std::fmt::Display;
 use std::io::{self, Write};

@@ -46,7 +46,10 @@ impl PictureTarget {
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
                 format: Self::FORMAT,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+                // Bound as a texture where it is one step on the way to a window.
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
                 view_formats: &[],
             })
         })?;

@@ -22,9 +22,17 @@ use super::meadows::{parade, rolling_ball};
 /// tip has that of eight: 3.8e-5 m; the second round starts from directions of segments 0.05 m
 /// long that are off by as much, which the springs and the way out pass on undamped: twice.
 const NODE_M: f64 = 2.0 * 3.8e-5;
+/// A segment of length L that is turned onto a face it meets head on keeps a sideways run of
+/// √(L² − rise²), and an error e of the rise becomes up to √(2·L·e) of it: with L = 0.42/8 m and one
+/// round's e = 4.8e-6 m that is 7.1e-4 m.
+const HEAD_ON_M: f64 = 7.1e-4;
+/// Share of plants that may be so far off. The run magnifies e beyond the limit above where it is
+/// shorter than L/16, for directions within 3.6° of a face's normal: 0.2% of a half sphere for each
+/// node turned, of which a plant at a body's front has some five.
+const HEAD_ON_SHARE: f64 = 1e-2;
 /// Plants that may be further off, as a share: ones at an edge of a decision (which face is nearer,
 /// whether the strain is met, whether a silhouette's weight is one half) go to one side here and to
-/// the other there. The product promises a share of 0.1% of plants that end on another side.
+/// the other there. The product promises at most 0.1% of plants that end on another side.
 const EDGE_SHARE: f64 = 1e-3;
 
 /// What a run of ticks compared.
@@ -33,10 +41,10 @@ struct Compared {
     touched: u64,
     /// Touched on one side only.
     apart: u64,
+    /// Off as far as a head-on segment may be.
+    head_on: u64,
     /// Further off than rounding explains.
     edges: u64,
-    /// Of the edges, those whose nodes remember other faces.
-    other_faces: u64,
 }
 
 fn slab_of<'a>(state: &'a impl GrassState<f32>, tile: &TileWork) -> Result<&'a Slab<f32>, Failed> {
@@ -51,8 +59,8 @@ impl Compared {
             nodes: Difference::new("relaxed nodes", "m"),
             touched: 0,
             apart: 0,
+            head_on: 0,
             edges: 0,
-            other_faces: 0,
         }
     }
 
@@ -90,9 +98,10 @@ impl Compared {
             .clone()
             .map(|n| distance(ours.offsets[n].to_f32(), theirs.offsets[n].to_f32()))
             .fold(0.0, f64::max);
-        if off > NODE_M {
+        if off > HEAD_ON_M {
             self.edges += 1;
-            self.other_faces += u64::from(ours.faces[nodes.clone()] != theirs.faces[nodes]);
+        } else if off > NODE_M {
+            self.head_on += 1;
         } else {
             self.nodes.add(off, || {
                 format!("tick {now} tile {} plant {place}", tile.tile)
@@ -101,18 +110,15 @@ impl Compared {
     }
 
     fn check(&self) -> Result<(), Failed> {
-        let share = (self.apart + self.edges) as f64 / self.touched.max(1) as f64;
-        println!(
-            "{} plants touched, {} on one side only, {} at an edge ({} by another \
-             face)",
-            self.touched, self.apart, self.edges, self.other_faces
+        let text = format!(
+            "{} plants touched, {} on one side only, {} at an edge, {} head on",
+            self.touched, self.apart, self.edges, self.head_on
         );
-        ensure(self.touched > 1000 && share <= EDGE_SHARE, || {
-            format!(
-                "{} apart and {} at an edge of {}",
-                self.apart, self.edges, self.touched
-            )
-        })?;
+        println!("{text}");
+        let share = |count: u64| count as f64 / self.touched.max(1) as f64;
+        let decided = share(self.apart + self.edges) <= EDGE_SHARE;
+        let turned = share(self.head_on) <= HEAD_ON_SHARE;
+        ensure(self.touched > 1000 && decided && turned, || text)?;
         self.nodes.check(NODE_M)
     }
 }
@@ -153,11 +159,11 @@ fn compare_ticks(
 }
 
 pub fn a_tick_agrees_with_cubes(device: &Device) -> Result<(), Failed> {
-    compare_ticks(device, rolling_ball(Collider::Cube)?, 60..120)?.check()
+    compare_ticks(device, rolling_ball(Collider::Cube)?, 60..150)?.check()
 }
 
 pub fn a_tick_agrees_with_closed_forms(device: &Device) -> Result<(), Failed> {
-    compare_ticks(device, rolling_ball(Collider::Analytic)?, 60..120)?.check()
+    compare_ticks(device, rolling_ball(Collider::Analytic)?, 60..150)?.check()
 }
 
 pub fn every_kind_of_solid_agrees(device: &Device) -> Result<(), Failed> {

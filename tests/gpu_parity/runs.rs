@@ -143,12 +143,12 @@ pub fn a_still_meadow_dispatches_nothing(device: &Device) -> Result<(), Failed> 
 pub fn a_full_device_refuses_and_counts(device: &Device) -> Result<(), Failed> {
     let mut meadow = rolling_ball(Collider::Analytic)?;
     let mut gpu = GpuGrass::new(&device.gpu, &device.kernels, &mut meadow)?;
-    meadow.tiles.slabs.lower_limit(3);
+    meadow.tiles.slabs.lower_limit(5);
     for _ in 0..120 {
         sward::gpu::tick(&mut meadow, &mut gpu)?;
     }
     let refused = meadow.counters.refused_tiles;
-    ensure(refused > 0 && meadow.tiles.len() == 3, || {
+    ensure(refused > 0 && meadow.tiles.len() == 5, || {
         format!("{refused} refused, {} active", meadow.tiles.len())
     })?;
     let state = gpu.read_state(&meadow)?;

@@ -8,6 +8,7 @@ pub mod render;
 pub mod run;
 mod scene_file;
 mod schema;
+pub mod view;
 
 use std::io;
 
@@ -20,9 +21,10 @@ use crate::run::Exit;
 /// # Errors
 ///
 /// The command's own; each knows its exit code.
-pub fn run(command: Command) -> Result<Exit, Failure> {
+pub fn run(command: Option<Command>) -> Result<Exit, Failure> {
     let out = &mut io::stdout().lock();
-    match command {
+    match command.unwrap_or_else(|| Command::View(view::Arguments::default())) {
+        Command::View(arguments) => view::run(arguments, out),
         Command::Run(arguments) => run::run(&arguments, out),
         Command::Render(arguments) => render::run(&arguments, out),
         Command::Bench(arguments) => bench::run(&arguments, out),

@@ -1,0 +1,91 @@
+//! `sward view` where there is no display.
+
+use std::fs;
+use std::io::Write;
+
+use super::scenes::SceneList;
+use super::{Options, complain};
+use crate::app::Failure;
+use crate::gpu::{Gpu, GpuError};
+use crate::render::PictureTarget;
+use crate::run::{Engine, Exit, Stage, StageError};
+use crate::scene::LoadedScene;
+use crate::sim::Meadow;
+
+/// Runs the current scene for its length, writes `sward-SCENE.png` where an adapter exists, and
+/// prints a line.
+///
+/// # Errors
+/// An invalid scene, a picture that cannot be drawn or written.
+pub fn run(
+    reason: &str,
+    scenes: &SceneList,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<Exit, Failure> {
+    let loaded = scenes.load()?;
+    complain(&format!(
+        "no display ({reason}), so '{}' runs without a window",
+        loaded.name
+    ));
+    match Gpu::headless() {
+        Ok(gpu) => with_picture(&gpu, &loaded, options, out)?,
+        Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoDevice { .. })) => {
+            complain(&format!("no picture: {error}"));
+            without_picture(&loaded, out)?;
+        }
+        Err(error) => return Err(error.into()),
+    }
+    Ok(Exit::Ok)
+}
+
+fn with_picture(
+    gpu: &Gpu,
+    loaded: &LoadedScene,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<(), Failure> {
+    let target = PictureTarget::new(gpu, options.size).map_err(StageError::from)?;
+    let mut stage = Stage::new(
+        gpu,
+        loaded,
+        options.engine,
+        PictureTarget::FORMAT,
+        options.size,
+    )?;
+    while stage.meadow().time_s() < loaded.scene.duration_s {
+        stage.tick()?;
+    }
+    let view = stage.camera(None)?;
+    stage.draw(gpu, &view, &target.view, false)?;
+    let picture = target.read(gpu).map_err(StageError::from)?;
+    let path = options.out.join(format!("sward-{}.png", loaded.name));
+    let png = super::screenshot::encode(&picture, &stage, gpu).map_err(StageError::from)?;
+    fs::create_dir_all(&options.out).map_err(|e| Failure::file(&options.out, e))?;
+    fs::write(&path, png).map_err(|e| Failure::file(&path, e))?;
+    print_line(loaded, stage.meadow(), out)?;
+    writeln!(out, "picture: {}", path.display())?;
+    Ok(())
+}
+
+fn without_picture(loaded: &LoadedScene, out: &mut impl Write) -> Result<(), Failure> {
+    let mut meadow = Meadow::new(loaded.scene.clone(), &loaded.assets).map_err(StageError::from)?;
+    let mut engine = Engine::cpu();
+    while meadow.time_s() < loaded.scene.duration_s {
+        engine.tick(&mut meadow).map_err(StageError::from)?;
+    }
+    print_line(loaded, &meadow, out)
+}
+
+fn print_line(loaded: &LoadedScene, meadow: &Meadow, out: &mut impl Write) -> Result<(), Failure> {
+    writeln!(
+        out,
+        "{}: {:.2} s simulated, {} of {} tiles awake at most, {} now",
+        loaded.name,
+        meadow.time_s(),
+        meadow.tiles.peak,
+        meadow.field.grid.tile_count(),
+        meadow.tiles.len()
+    )?;
+    Ok(())
+}
