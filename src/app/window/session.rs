@@ -65,7 +65,8 @@ pub struct Session {
     pub(super) wants_picture: bool,
     out: PathBuf,
     scale: f64,
-    last_frame: Instant,
+    /// When the last frame began; `None` if the window has waited for an event since.
+    last_frame: Option<Instant>,
     frame_ms: f64,
     pub window: Arc<Window>,
 }
@@ -115,7 +116,7 @@ impl Session {
             wants_picture: false,
             out: options.out.clone(),
             scale,
-            last_frame: Instant::now(),
+            last_frame: None,
             frame_ms: 0.0,
             window,
         };
@@ -223,11 +224,16 @@ impl Session {
         Ok(self.after(acted, repaint_after))
     }
 
-    /// Seconds since the last frame.
+    /// Seconds since the last frame; none after a wait, which is nobody's delay.
     fn clock(&mut self) -> f64 {
         let now = Instant::now();
-        let frame_s = (now - self.last_frame).as_secs_f64();
-        self.last_frame = now;
+        let Some(before) = self.last_frame.replace(now) else {
+            return 0.0;
+        };
+        let frame_s = (now - before).as_secs_f64();
+        if self.frame_ms == 0.0 {
+            self.frame_ms = 1e3 * frame_s;
+        }
         self.frame_ms += FRAME_WEIGHT * (1e3 * frame_s - self.frame_ms);
         frame_s
     }
@@ -301,6 +307,7 @@ impl Session {
         if acted || moves || self.wants_picture || repaint_after.is_zero() {
             return After::Frame;
         }
+        self.last_frame = None;
         let has_toasts = self.toasts.current().next().is_some();
         let wait = if has_toasts {
             repaint_after.min(TOAST_TICK)
