@@ -27,77 +27,89 @@ fn across(n: vec3f) -> vec3f {
     return unit_or(axis - n * dot(n, axis), UP);
 }
 
-// Puts node j + 1 at a segment's length from node j, on the ground if it would dip into it.
-fn lay_out(tile: TileRecord, length: f32, j: u32) {
-    let rest = unit_or(wind_nodes[j + 1u] - wind_nodes[j], UP);
-    let direction = unit_or(nodes[j + 1u] - nodes[j], rest);
-    var next = nodes[j] + direction * length;
-    let height = ground_in_anchor(tile, next.x, next.z);
-    if next.y < height {
-        let rise = clamp(height - nodes[j].y, -length, length);
-        let run = sqrt(max(length * length - rise * rise, 0.0));
-        let sideways = unit_or(vec3f(rest.x, 0.0, rest.z), vec3f(1.0, 0.0, 0.0));
-        let flat = unit_or(vec3f(direction.x, 0.0, direction.z), sideways);
-        next = nodes[j] + flat * run + UP * rise;
+// Direction of segment j in the wind pose.
+fn rest_direction(j: u32) -> vec3f {
+    return unit_or(wind_nodes[j + 1u] - wind_nodes[j], UP);
+}
+
+// Turns segment j about its lower node until its upper one is on the ground, if it is below.
+fn lay_on_ground(tile: TileRecord, length: f32, j: u32) {
+    let start = nodes[j];
+    let to = nodes[j + 1u];
+    let height = ground_in_anchor(tile, to.x, to.z);
+    if to.y >= height {
+        return;
     }
-    nodes[j + 1u] = next;
+    let rise = clamp(height - start.y, -length, length);
+    let run = sqrt(max(length * length - rise * rise, 0.0));
+    let rest = rest_direction(j);
+    let sideways = unit_or(vec3f(rest.x, 0.0, rest.z), vec3f(1.0, 0.0, 0.0));
+    let flat = unit_or(vec3f(to.x - start.x, 0.0, to.z - start.z), sideways);
+    nodes[j + 1u] = start + flat * run + UP * rise;
 }
 
 // Turns segment j about its lower node until its upper one is out of a part, where its length
-// allows that.
-fn turn_out(length: f32, j: u32, n: vec3f, depth: f32) {
+// allows that. Returns whether it did.
+fn turn_out(length: f32, j: u32, n: vec3f, depth: f32) -> bool {
     let segment = nodes[j + 1u] - nodes[j];
     let along = dot(segment, n);
     let rise = along + depth;
     let run = length * length - rise * rise;
     if run <= 0.0 {
-        nodes[j + 1u] += n * depth;
-        return;
+        return false;
     }
-    let rest = unit_or(wind_nodes[j + 1u] - wind_nodes[j], UP);
+    let rest = rest_direction(j);
     let sideways = unit_or(rest - n * dot(rest, n), across(n));
     let flat = unit_or(segment - n * along, sideways);
     nodes[j + 1u] = nodes[j] + n * rise + flat * sqrt(run);
+    return true;
+}
+
+// Asks one part about segment j's upper node, and pushes or (`laying`) turns it out. Returns the
+// node's bit if that was done.
+fn meet_part(contact: u32, pose: Pose, length: f32, j: u32, laying: bool) -> u32 {
+    let reach = Reach(nodes[j], select(-1.0, length, laying));
+    let exit = way_out(contact, pose, nodes[j + 1u], faces[j], reach);
+    if exit.face == NO_FACE {
+        return 0u;
+    }
+    faces[j] = contacts[contact].key | ((exit.face + 1u) & FACE_MASK);
+    let n = rotate(pose.turn, exit.normal);
+    if laying {
+        return select(0u, 2u << j, turn_out(length, j, n, exit.depth));
+    }
+    nodes[j + 1u] += n * exit.depth;
+    return 2u << j;
 }
 
 // Pushes every node out of every part that reaches the plant, part after part; or, `laying`, lays
-// out and turns out node after node. Returns a bit per node that was inside a part.
-fn meet_bodies(tile: TileRecord, reach: f32, length: f32, share: f32, laying: bool) -> u32 {
+// segments out at their length from root to tip and turns them out of every part and of the ground.
+// Returns a bit per node that was moved by a part.
+fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, laying: bool) -> u32 {
     let parts = tile.end_contact - tile.first_contact;
     var pushed = 0u;
     var posed = NO_FACE;
     var pose: Pose;
     var near = false;
     for (var step = 0u; step < parts * field.segments; step++) {
-        var part = step / field.segments;
-        var j = step % field.segments;
-        if laying {
-            j = step / parts;
-            part = step % parts;
-            if part == 0u {
-                lay_out(tile, length, j);
-            }
+        let part = select(step / field.segments, step % parts, laying);
+        let j = select(step % field.segments, step / parts, laying);
+        if laying && part == 0u {
+            let direction = unit_or(nodes[j + 1u] - nodes[j], rest_direction(j));
+            nodes[j + 1u] = nodes[j] + direction * length;
+            lay_on_ground(tile, length, j);
         }
         let contact = tile.first_contact + part;
         if posed != contact {
             posed = contact;
             pose = pose_at(contact, share);
-            near = reaches(contact, nodes[0], reach);
+            near = reaches(contact, nodes[0], plant_reach);
         }
-        if !near {
-            continue;
+        if near {
+            pushed |= meet_part(contact, pose, length, j, laying);
         }
-        let exit = way_out(contact, pose, nodes[j + 1u], faces[j]);
-        if exit.face == NO_FACE {
-            continue;
-        }
-        faces[j] = contacts[contact].key | ((exit.face + 1u) & FACE_MASK);
-        pushed |= 2u << j;
-        let n = rotate(pose.turn, exit.normal);
-        if laying {
-            turn_out(length, j, n, exit.depth);
-        } else {
-            nodes[j + 1u] += n * exit.depth;
+        if laying && part + 1u == parts {
+            lay_on_ground(tile, length, j);
         }
     }
     return pushed;
@@ -150,26 +162,19 @@ fn respond(tile: TileRecord, reach: f32, sweeps: u32, length: f32) -> u32 {
     for (var sweep = 1u; sweep <= sweeps; sweep++) {
         let share = f32(sweep) / f32(sweeps);
         var pushed = 0u;
-        // Step 0 is the first push, which decides whether any round follows. Then each round takes
-        // two steps: springs and laying out, and pushing.
-        for (var step = 0u; step <= 2u * tick.most_rounds; step++) {
-            let laying = (step & 1u) == 1u;
-            if laying {
+        // Round 0 is the first push, which decides whether any round follows.
+        for (var round = 0u; round <= tick.most_rounds; round++) {
+            if round > 0u {
                 bend_springs();
                 follow_pushed(pushed, length);
             }
-            let met = meet_bodies(tile, reach, length, share, laying);
-            if laying {
-                continue;
-            }
-            pushed = met;
-            if step == 0u {
+            pushed = meet_bodies(tile, reach, length, share, round > 0u);
+            if round == 0u {
                 if pushed == 0u {
                     break;
                 }
                 continue;
             }
-            let round = step / 2u;
             keep_above_ground(tile);
             rounds_used = max(rounds_used, round);
             if round >= tick.fewest_rounds && largest_strain(length) <= tick.strain_limit {

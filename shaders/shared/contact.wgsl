@@ -73,15 +73,17 @@ fn holds(contact: u32, pose: Pose, vertex: vec3f) -> bool {
     return solid_depth(contacts[contact].solid, p) > 0.0;
 }
 
-// The way out of the part at a pose for a vertex with a memory of its last face.
-fn way_out(contact: u32, pose: Pose, vertex: vec3f, memory: u32) -> Exit {
+// The way out of the part at a pose for a vertex with a memory of its last face. `reach` is the
+// vertex's segment in the anchor's coordinates.
+fn way_out(contact: u32, pose: Pose, vertex: vec3f, memory: u32, reach: Reach) -> Exit {
     let p = inverse_point(pose, vertex);
+    let segment = Reach(inverse_point(pose, reach.start), reach.length);
     var kept = NO_FACE;
     if (memory & ~FACE_MASK) == contacts[contact].key && (memory & FACE_MASK) != 0u {
         kept = (memory & FACE_MASK) - 1u;
     }
     if contacts[contact].uses_cube != 0u {
-        return cube_exit(contacts[contact].solid, p, kept);
+        return cube_exit(contacts[contact].solid, p, kept, segment);
     }
-    return solid_exit(contacts[contact].solid, p, kept);
+    return solid_exit(contacts[contact].solid, p, kept, segment);
 }

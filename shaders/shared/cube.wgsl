@@ -79,32 +79,19 @@ fn cube_inside(solid: SolidRecord, p: vec3f) -> bool {
 }
 
 // The way out for a point inside. No way leads through a hidden surface while another is open.
-fn cube_exit(solid: SolidRecord, p: vec3f, kept: u32) -> Exit {
+fn cube_exit(solid: SolidRecord, p: vec3f, kept: u32, reach: Reach) -> Exit {
     if !within_bounds(solid, p) {
         return outside();
     }
-    var best = outside();
-    var best_hidden = false;
-    var keep = outside();
+    var choice = no_choice();
     for (var face = 0u; face < 6u; face++) {
         let sample = cube_sample(solid, p, face);
         if !sample.hit || sample.behind <= 0.0 {
             return outside();
         }
-        let way = sample.behind * abs(sample.normal[face >> 1u]);
-        let exit = Exit(way, sample.normal, face);
-        if face == kept && !sample.hidden {
-            keep = exit;
-        }
-        let opens = best_hidden && !sample.hidden;
-        let nearer = best_hidden == sample.hidden && way < best.depth;
-        if best.face == NO_FACE || opens || nearer {
-            best = exit;
-            best_hidden = sample.hidden;
-        }
+        let depth = sample.behind * abs(sample.normal[face >> 1u]);
+        let price = cost(reach, p, depth, sample.normal) + select(0.0, HIDDEN_M, sample.hidden);
+        offer(&choice, kept, price, Exit(depth, sample.normal, face));
     }
-    if keep.face != NO_FACE && keep.depth * KEEP_FACE <= best.depth {
-        return keep;
-    }
-    return best;
+    return take(choice);
 }

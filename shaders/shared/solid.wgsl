@@ -34,6 +34,52 @@ fn outside() -> Exit {
     return Exit(0.0, UP, NO_FACE);
 }
 
+// The segment whose upper node looks for a way out.
+struct Reach {
+    // The segment's lower node, in the space of the solid.
+    start: vec3f,
+    // Its length; less than 0 if anything can be reached.
+    length: f32,
+}
+
+// What the way out of p by `depth` along a normal costs.
+fn cost(reach: Reach, p: vec3f, depth: f32, normal: vec3f) -> f32 {
+    let rise = dot(p - reach.start, normal) + depth;
+    let far = reach.length >= 0.0 && abs(rise) >= reach.length;
+    return select(depth, depth + OUT_OF_REACH_M, far);
+}
+
+// The cheapest way out among those offered, and the one through the kept face.
+struct Choice {
+    best: Exit,
+    least: f32,
+    keep: Exit,
+    keep_cost: f32,
+}
+
+fn no_choice() -> Choice {
+    return Choice(outside(), 0.0, outside(), 0.0);
+}
+
+fn offer(choice: ptr<function, Choice>, kept: u32, cost: f32, exit: Exit) {
+    if exit.face == kept {
+        (*choice).keep = exit;
+        (*choice).keep_cost = cost;
+    }
+    if (*choice).best.face == NO_FACE || cost < (*choice).least {
+        (*choice).best = exit;
+        (*choice).least = cost;
+    }
+}
+
+// The kept way out while no other is cheaper by KEEP_FACE.
+fn take(choice: Choice) -> Exit {
+    if choice.keep.face != NO_FACE && choice.keep_cost * KEEP_FACE <= choice.least {
+        return choice.keep;
+    }
+    return choice.best;
+}
+
 // Features that a way out may lead through.
 fn face_count(solid: SolidRecord) -> u32 {
     switch solid.kind {
@@ -105,26 +151,16 @@ fn solid_depth(solid: SolidRecord, p: vec3f) -> f32 {
     return least;
 }
 
-// The way out for a point inside. `kept` is the feature of the last sub-step or NO_FACE; it is
-// kept until another is nearer by KEEP_FACE.
-fn solid_exit(solid: SolidRecord, p: vec3f, kept: u32) -> Exit {
-    var best = Exit(1e30, UP, NO_FACE);
-    var keep = best;
+// The way out for a point inside. `kept` is the feature of the last sub-step or NO_FACE.
+fn solid_exit(solid: SolidRecord, p: vec3f, kept: u32, reach: Reach) -> Exit {
+    var choice = no_choice();
     for (var face = 0u; face < face_count(solid); face++) {
         let found = solid_face(solid, p, face);
         if found.w <= 0.0 {
             return outside();
         }
         let exit = Exit(found.w, found.xyz, face);
-        if found.w < best.depth {
-            best = exit;
-        }
-        if face == kept {
-            keep = exit;
-        }
+        offer(&choice, kept, cost(reach, p, found.w, found.xyz), exit);
     }
-    if keep.face != NO_FACE && keep.depth * KEEP_FACE <= best.depth {
-        return keep;
-    }
-    return best;
+    return take(choice);
 }

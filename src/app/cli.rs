@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
-use super::commands::{blade_shape, list, run, view};
+use super::commands::{bench, blade_shape, list, render, run, view};
 
 /// Responsive grass: bodies press real imprints into a meadow.
 ///
@@ -27,6 +27,8 @@ asset is invalid; 4 a needed adapter or feature is missing; 5 internal error.";
 pub enum Command {
     View(view::Arguments),
     Run(run::Arguments),
+    Render(render::Arguments),
+    Bench(bench::Arguments),
     BladeShape(blade_shape::Arguments),
     List(list::Arguments),
     /// Print the JSON schema of a scene

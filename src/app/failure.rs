@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use crate::field::blade_shape::ShapeError;
 use crate::gpu::GpuError;
-use crate::run::{Exit, StageError};
+use crate::render::RenderError;
+use crate::run::{Exit, RunError, StageError};
 use crate::scene::SceneError;
 
 /// An error that ends a command. Printed once, by the program's main function.
@@ -18,6 +19,8 @@ pub enum Failure {
     Scene(#[from] SceneError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Run(#[from] RunError),
     #[error(transparent)]
     Stage(#[from] StageError),
     /// The platform refuses a window, for a reason in its own words.
@@ -34,14 +37,12 @@ impl Failure {
     pub fn exit(&self) -> Exit {
         match self {
             Self::Usage(_) => Exit::Usage,
-            Self::Scene(_) | Self::Stage(StageError::Meadow(_)) => Exit::Invalid,
-            Self::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }) => Exit::NoAdapter,
+            Self::Scene(_) => Exit::Invalid,
+            Self::Run(error) => exit_of_run(error),
+            Self::Stage(error) => exit_of_stage(error),
+            Self::Gpu(error) => exit_of_gpu(error),
             Self::Output(_) if self.is_closed_pipe() => Exit::Ok,
-            Self::Gpu(_)
-            | Self::Stage(_)
-            | Self::Window(_)
-            | Self::Output(_)
-            | Self::File { .. } => Exit::Internal,
+            Self::Window(_) | Self::Output(_) | Self::File { .. } => Exit::Internal,
         }
     }
 
@@ -56,6 +57,40 @@ impl Failure {
     /// Whether the reader of stdout has had enough.
     pub fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe)
+    }
+}
+
+/// The exit code of a scenario that could not be run.
+pub fn exit_of_run(error: &RunError) -> Exit {
+    match error {
+        RunError::Meadow { .. } => Exit::Invalid,
+        RunError::Gpu { source, .. } => exit_of_gpu(source),
+        RunError::Rate(_) => Exit::Usage,
+    }
+}
+
+fn exit_of_gpu(error: &GpuError) -> Exit {
+    match error {
+        GpuError::NoAdapter { .. } | GpuError::NoDevice { .. } | GpuError::TooLarge { .. } => {
+            Exit::NoAdapter
+        }
+        _ => Exit::Internal,
+    }
+}
+
+fn exit_of_stage(error: &StageError) -> Exit {
+    match error {
+        StageError::Meadow(_) => Exit::Invalid,
+        StageError::Gpu(error) | StageError::Render(RenderError::Gpu(error)) => exit_of_gpu(error),
+        StageError::Render(RenderError::PictureSize { .. } | RenderError::PictureBytes { .. })
+        | StageError::UnknownCamera { .. } => Exit::Usage,
+        StageError::Render(_) => Exit::Internal,
+    }
+}
+
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
+        Self::Stage(error.into())
     }
 }
 

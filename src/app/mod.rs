@@ -2,7 +2,9 @@
 
 mod cli;
 mod commands;
+mod device;
 mod failure;
+mod progress;
 mod window;
 
 use std::fmt::Display;

@@ -175,7 +175,7 @@ impl<T: Pod> Buffer<T> {
     /// # Errors
     /// `ReadBack` or the device's own errors.
     pub fn read(&self, gpu: &Gpu, count: usize) -> Result<Vec<T>, GpuError> {
-        self.read_runs(gpu, &[0..count.min(self.len)])
+        self.read_runs(gpu, std::slice::from_ref(&(0..count.min(self.len))))
     }
 
     /// Reads runs of elements back, one after the other. Waits for the device.

@@ -17,8 +17,8 @@ use crate::field::plant::MAX_SPECIES;
 use crate::field::pose::{MAX_NODES, MAX_SEGMENTS};
 use crate::field::wind::WAVES;
 use crate::sim::contact::FACE_MASK;
-use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIT};
-use crate::sim::solid::{KEEP_FACE, NO_FACE};
+use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIDDEN_M, HIT};
+use crate::sim::solid::{KEEP_FACE, NO_FACE, OUT_OF_REACH_M};
 
 /// A WGSL file, embedded, with the Rust constants it uses.
 #[derive(Clone, Copy, Debug)]
@@ -112,7 +112,7 @@ macro_rules! wgsl_file {
 /// Files that any layer's shaders may import.
 pub const SHARED: &[WgslFile] = &[
     wgsl_file!("shared/contact.wgsl", FACE_MASK, NO_FACE),
-    wgsl_file!("shared/cube.wgsl", HIT, HIDDEN, KEEP_FACE, NO_FACE),
+    wgsl_file!("shared/cube.wgsl", HIDDEN, HIDDEN_M, HIT, NO_FACE),
     wgsl_file!("shared/field.wgsl", MAX_SPECIES),
     wgsl_file!("shared/ground.wgsl"),
     wgsl_file!("shared/philox.wgsl"),
@@ -124,6 +124,7 @@ pub const SHARED: &[WgslFile] = &[
         "shared/solid.wgsl",
         KEEP_FACE,
         NO_FACE,
+        OUT_OF_REACH_M,
         SOLID_BALL,
         SOLID_BOX,
         SOLID_CAPSULE,

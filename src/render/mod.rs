@@ -30,7 +30,7 @@ pub use frame::{FrameInput, Renderer};
 pub use ground_look::GroundLook;
 pub use meadow_view::{active_slabs, bodies_at, scene_view, tile_marks};
 pub use overlay::{TileMark, TileTone};
-pub use picture::{Picture, PictureTarget};
+pub use picture::{Animation, Picture, PictureTarget};
 pub use sky::{Daylight, Sun};
 pub use tonemap::Exposure;
 

@@ -1,5 +1,7 @@
 //! Pictures in memory: read back from the device, written as PNG.
 
+use std::io::Write;
+
 use crate::gpu::{Gpu, read_mapped};
 
 use super::error::RenderError;
@@ -109,18 +111,68 @@ impl Picture {
     /// `Png`, for a keyword PNG does not allow (1 to 79 Latin-1 characters).
     pub fn to_png(&self, texts: &[(&str, &str)]) -> Result<Vec<u8>, RenderError> {
         let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
-        encoder.set_color(png::ColorType::Rgba);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        for (keyword, text) in texts {
-            encoder.add_itxt_chunk((*keyword).to_owned(), (*text).to_owned())?;
-        }
-        let mut writer = encoder.write_header()?;
+        let mut writer = encoder(&mut bytes, [self.width, self.height], texts)?.write_header()?;
         writer.write_image_data(&self.rgba8)?;
         writer.finish()?;
         Ok(bytes)
     }
+}
+
+/// A PNG file of several pictures, shown one after the other without end (APNG).
+pub struct Animation<W: Write> {
+    writer: png::Writer<W>,
+}
+
+impl<W: Write> Animation<W> {
+    /// Starts an animation of `frames` pictures of one size, at least one, `hz` of them a second.
+    ///
+    /// # Errors
+    /// `Png`, as for [`Picture::to_png`], and what `out` reports.
+    pub fn new(
+        out: W,
+        size: [u32; 2],
+        frames: u32,
+        hz: u16,
+        texts: &[(&str, &str)],
+    ) -> Result<Self, RenderError> {
+        let mut encoder = encoder(out, size, texts)?;
+        encoder.set_animated(frames, 0)?;
+        encoder.set_frame_delay(1, hz)?;
+        Ok(Self {
+            writer: encoder.write_header()?,
+        })
+    }
+
+    /// Adds the next picture.
+    ///
+    /// # Errors
+    /// `Png`, for a picture of another size or one too many, and what the output reports.
+    pub fn add(&mut self, picture: &Picture) -> Result<(), RenderError> {
+        Ok(self.writer.write_image_data(&picture.rgba8)?)
+    }
+
+    /// Ends the file.
+    ///
+    /// # Errors
+    /// `Png`, if pictures are missing, and what the output reports.
+    pub fn finish(self) -> Result<(), RenderError> {
+        Ok(self.writer.finish()?)
+    }
+}
+
+fn encoder<'a, W: Write>(
+    out: W,
+    [width, height]: [u32; 2],
+    texts: &[(&str, &str)],
+) -> Result<png::Encoder<'a, W>, RenderError> {
+    let mut encoder = png::Encoder::new(out, width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    for (keyword, text) in texts {
+        encoder.add_itxt_chunk((*keyword).to_owned(), (*text).to_owned())?;
+    }
+    Ok(encoder)
 }
 
 #[cfg(test)]
@@ -145,5 +197,31 @@ mod tests {
         let texts = &reader.info().utf8_text;
         assert_eq!(texts.len(), 2);
         assert_eq!(texts[0].get_text().expect("text"), "wiese äöü");
+    }
+
+    #[test]
+    fn an_animation_holds_every_picture() {
+        let pictures = [0, 100].map(|first| Picture {
+            width: 2,
+            height: 1,
+            rgba8: (first..first + 8).collect(),
+        });
+        let mut bytes = Vec::new();
+        let mut animation = Animation::new(&mut bytes, [2, 1], 2, 30, &[]).expect("a start");
+        for picture in &pictures {
+            animation.add(picture).expect("a frame");
+        }
+        animation.finish().expect("an end");
+        let decoder = png::Decoder::new(std::io::Cursor::new(&bytes));
+        let mut reader = decoder.read_info().expect("a header");
+        assert_eq!(
+            reader.info().animation_control.map(|c| c.num_frames),
+            Some(2)
+        );
+        for picture in &pictures {
+            let mut pixels = vec![0; 8];
+            reader.next_frame(&mut pixels).expect("pixels");
+            assert_eq!(pixels, picture.rgba8);
+        }
     }
 }

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use crate::field::TileId;
 use crate::gpu::{Gpu, GpuError, GpuGrass, GpuState, GrassKernels, TickError};
-use crate::sim::measure::{self, Snapshot, Standing};
+use crate::sim::measure::{self, GrassState, Snapshot, Standing};
+use crate::sim::work::TileWork;
 use crate::sim::{Grass, Meadow};
 
 /// Which engine a user asks for.
@@ -101,6 +102,23 @@ impl Engine {
             Self::Cpu(grass) => measure::snapshot(meadow, grass),
             Self::Gpu(engine) => measure::snapshot(meadow, engine.state(meadow)?),
         })
+    }
+
+    /// Every plant of an active tile as it stands, in the order of places.
+    ///
+    /// # Errors
+    ///
+    /// The device's.
+    pub fn standing(
+        &mut self,
+        meadow: &Meadow,
+        tile: &TileWork,
+    ) -> Result<Vec<Standing<f32>>, GpuError> {
+        let slab = match self {
+            Self::Cpu(grass) => GrassState::slab(grass, tile.slab),
+            Self::Gpu(engine) => engine.state(meadow)?.slab(tile.slab),
+        };
+        Ok(slab.map_or_else(Vec::new, |slab| measure::standing(meadow, tile, slab)))
     }
 
     /// The plants rooted near a place.

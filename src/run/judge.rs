@@ -135,18 +135,12 @@ impl Judge {
                     Some(limit) => (watch.max_penetration_m(), *limit),
                     None => (watch.worst.depth_m, watch.worst.limit_m),
                 };
-                at_most("no node is deeper inside a body", measured, limit, "m")
+                at_most("deepest node inside a body", measured, limit, "m")
             }
             Expectation::Strain { at_most: limit } => {
-                at_most("no segment is strained more", watch.max_strain, *limit, "")
+                at_most("largest strain of a segment", watch.max_strain, *limit, "")
             }
-            Expectation::AllRest { by_s } => {
-                let last = watch.last_active_s.unwrap_or(0.0);
-                Verdict {
-                    passed: Some(last < *by_s && meadow.time_s() + 1e-9 >= *by_s),
-                    ..at_most("all tiles rest", last, *by_s, "s")
-                }
-            }
+            Expectation::AllRest { by_s } => all_rest(meadow, watch.last_active_s, *by_s),
             Expectation::ActiveTiles { at_least, at_most } => {
                 let peak = meadow.tiles.peak as f64;
                 between("most active tiles at once", peak, *at_least, *at_most, "")
@@ -204,13 +198,59 @@ fn verdict(
 }
 
 fn at_most(what: &str, measured: f64, limit: f64, unit: &'static str) -> Verdict {
-    verdict(
-        format!("{what} than"),
-        measured <= limit,
-        measured,
-        limit,
-        unit,
-    )
+    let what = format!("{what} is at most");
+    verdict(what, measured <= limit, measured, limit, unit)
+}
+
+/// `last_active_s` is `None` where no tile was ever awake.
+fn all_rest(meadow: &Meadow, last_active_s: Option<f64>, by_s: f64) -> Verdict {
+    let seen_to_the_end = meadow.time_s() + 1e-9 >= by_s;
+    let rested = last_active_s.is_none_or(|last| last < by_s);
+    Verdict {
+        measured: last_active_s,
+        reason: match (last_active_s, seen_to_the_end) {
+            (_, false) => Some(format!("the run ends at {} s", meadow.time_s())),
+            (None, true) => Some("no tile was ever awake".into()),
+            (Some(_), true) => None,
+        },
+        ..verdict(
+            "the last tile that was awake rests before",
+            rested && seen_to_the_end,
+            by_s,
+            by_s,
+            "s",
+        )
+    }
+}
+
+/// A failed verdict for everything that was limited although a scene did not ask for it: results
+/// beyond a limit are no longer those of the scene.
+pub fn exceeded_limits(meadow: &Meadow, watch: &Watch) -> Vec<Verdict> {
+    let counters = &meadow.counters;
+    let none = [
+        (
+            "sub-steps in which a body was too fast for solver.max_sweeps",
+            counters.capped_sweeps,
+            "raise max_sweeps or shorten substep_s",
+        ),
+        (
+            "touched tiles that could not wake, summed over sub-steps",
+            counters.refused_tiles,
+            "all grass state is in use: make tiles larger, or the density lower",
+        ),
+        (
+            "plants with a value that is not finite, summed over frames",
+            watch.not_finite,
+            "this is a fault of the engine",
+        ),
+    ];
+    none.into_iter()
+        .filter(|&(_, count, _)| count > 0)
+        .map(|(what, count, advice)| Verdict {
+            reason: Some(advice.into()),
+            ..verdict(what, false, count as f64, 0.0, "")
+        })
+        .collect()
 }
 
 fn between(

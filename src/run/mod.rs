@@ -1,7 +1,9 @@
 //! Running scenes: the clock, what is measured, what is judged, reports and benches.
 
+pub mod bench;
 pub mod engine;
 mod exit;
+mod jitter;
 pub mod judge;
 pub mod junit;
 mod pass_times;

@@ -11,6 +11,9 @@ use super::engine::Engine;
 const SHARES: [f64; 3] = [0.5, 0.1, 0.01];
 /// A tip is worth following from this offset on, in metres.
 const WORTH_M: f64 = 0.05;
+/// A plant counts as just let go for this share of the recovery time: one that a body holds is not
+/// touched in every sub-step.
+const LATELY: f64 = 0.05;
 /// Two roots closer than this are one plant, in metres.
 const SAME_ROOT_M: f64 = 1e-6;
 
@@ -66,13 +69,15 @@ impl Release {
         self.followed.map_or([None; 3], |f| f.tip)
     }
 
-    /// A plant let go since the last frame; one touched in this very sub-step is still held.
+    /// A plant let go lately; one touched in this very sub-step is still held.
     fn just_released(
         &self,
         meadow: &Meadow,
         engine: &mut Engine,
     ) -> Result<Option<Followed>, GpuError> {
-        let just_now = self.last_tick.max(1)..meadow.ticks;
+        let lately = (f64::from(meadow.recovery_ticks()) * LATELY) as u32;
+        let first = meadow.ticks.saturating_sub(lately).min(self.last_tick);
+        let just_now = first.max(1)..meadow.ticks;
         let field = &meadow.field;
         let half = 0.5 * f64::from(field.grid.tile_m());
         for tile in &meadow.work.tiles {

@@ -6,6 +6,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::gpu::{AdapterReport, Gpu};
+
 use super::exit::Exit;
 use super::judge::Verdict;
 use super::scenario::Outcome;
@@ -34,6 +36,23 @@ pub struct Adapter {
     pub name: String,
     pub driver: String,
     pub backend: String,
+}
+
+impl Adapter {
+    /// What a device runs on.
+    pub fn of(gpu: &Gpu) -> Self {
+        let AdapterReport {
+            name,
+            driver,
+            backend,
+            ..
+        } = gpu.adapter.clone();
+        Self {
+            name,
+            driver,
+            backend,
+        }
+    }
 }
 
 /// One scenario.
@@ -90,7 +109,8 @@ pub struct Metrics {
     pub max_length_strain: f64,
     /// Largest distance of a node from its wind pose.
     pub max_offset_m: f64,
-    /// Largest move of a touched plant's node in a frame in which no body moved.
+    /// Largest move of a node of a held plant in a frame without wind in which no body moved; null
+    /// without such a frame.
     pub jitter_m_per_frame: Option<f64>,
     /// Times after release at which the weight of a plant's offset had fallen to a half, a tenth
     /// and a hundredth; null if no plant was followed so long.
@@ -217,7 +237,7 @@ impl Metrics {
             over_push_m: watch.over_push_m,
             max_length_strain: watch.max_strain,
             max_offset_m: watch.max_offset_m,
-            jitter_m_per_frame: None,
+            jitter_m_per_frame: watch.jitter.largest_m(),
             recovery_half_s: half,
             recovery_tenth_s: tenth,
             recovery_hundredth_s: hundredth,

@@ -8,7 +8,7 @@ use crate::sim::measure::Snapshot;
 use crate::sim::{Meadow, MeadowError};
 
 use super::engine::Engine;
-use super::judge::{Judge, Verdict};
+use super::judge::{Judge, Verdict, exceeded_limits};
 use super::pass_times::PassTimes;
 use super::timeline::Timeline;
 use super::watch::Watch;
@@ -37,6 +37,7 @@ impl Default for RunOptions {
 /// What a scenario came to.
 pub struct Outcome {
     pub name: String,
+    /// One per expectation, and one for every limit that was exceeded.
     pub verdicts: Vec<Verdict>,
     pub watch: Watch,
     /// The meadow as it stands at the end.
@@ -49,9 +50,9 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// True if every expectation that applies holds and nothing went non-finite.
+    /// True if every expectation that applies holds and no limit was exceeded.
     pub fn passed(&self) -> bool {
-        self.watch.not_finite == 0 && self.verdicts.iter().all(|v| v.passed != Some(false))
+        self.verdicts.iter().all(|v| v.passed != Some(false))
     }
 }
 
@@ -70,7 +71,7 @@ pub enum Device {
     /// The processor, for the cpu engine.
     Processor,
     /// A graphics device with its compiled passes, for the gpu engine.
-    Graphics(Gpu, GrassKernels),
+    Graphics(Gpu, Box<GrassKernels>),
 }
 
 impl Device {
@@ -80,8 +81,24 @@ impl Device {
     ///
     /// A shader that the driver refuses.
     pub fn graphics(gpu: Gpu) -> Result<Self, GpuError> {
-        let kernels = GrassKernels::new(&gpu)?;
+        let kernels = Box::new(GrassKernels::new(&gpu)?);
         Ok(Self::Graphics(gpu, kernels))
+    }
+
+    /// The graphics device, if it is one.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        match self {
+            Self::Processor => None,
+            Self::Graphics(gpu, _) => Some(gpu),
+        }
+    }
+
+    /// Name of the engine that it runs.
+    pub fn engine_name(&self) -> &'static str {
+        match self {
+            Self::Processor => "cpu",
+            Self::Graphics(..) => "gpu",
+        }
     }
 
     /// An engine for a meadow.
@@ -109,7 +126,7 @@ pub enum RunError {
 }
 
 impl RunError {
-    fn new(name: &str, source: impl Into<TickError>) -> Self {
+    pub(super) fn new(name: &str, source: impl Into<TickError>) -> Self {
         let name = name.to_owned();
         match source.into() {
             TickError::Meadow(source) => Self::Meadow { name, source },
@@ -173,10 +190,11 @@ pub fn run_scene(
         });
     }
     let wall_s = started.elapsed().as_secs_f64();
-    let verdicts = judges
+    let mut verdicts: Vec<Verdict> = judges
         .into_iter()
         .map(|judge| judge.finish(&meadow, &engine, &watch))
         .collect();
+    verdicts.extend(exceeded_limits(&meadow, &watch));
     let mut pass_ms = passes.median_ms();
     let device_ms = engine.device_pass_ms().into_iter();
     pass_ms.extend(device_ms.map(|(pass, ms)| (pass.to_owned(), ms)));

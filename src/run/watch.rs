@@ -8,6 +8,7 @@ use crate::sim::Meadow;
 use crate::sim::measure::{Depth, Snapshot};
 
 use super::engine::Engine;
+use super::jitter::Jitter;
 use super::release::Release;
 
 /// Metrics of a run so far.
@@ -29,6 +30,7 @@ pub struct Watch {
     /// The last frame alone.
     pub last: Snapshot,
     pub release: Release,
+    pub jitter: Jitter,
 }
 
 impl Watch {
@@ -47,6 +49,7 @@ impl Watch {
         let snapshot = engine.snapshot(meadow)?;
         self.fold(&snapshot);
         self.last = snapshot;
+        self.jitter.frame(meadow, engine)?;
         self.release.frame(meadow, engine)
     }
 

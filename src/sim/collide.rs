@@ -4,19 +4,43 @@
 //! closed form). A plant that no vertex of which is inside a body in any sweep is left alone: it
 //! only recovers. WGSL twin: `shaders/collide.wgsl`.
 
-use crate::base::Real;
-use crate::field::Nodes;
+use crate::base::{Real, Vec3};
+use crate::field::{MAX_NODES, Nodes};
 
 use super::contact::Touch;
 
-/// True where a node of the plant is inside a part during one of the sweeps.
+/// True where a plant that was pushed in the sub-step before is still held by a body: it keeps its
+/// pose, and does not recover yet. Without this it would sink into the body a little in every
+/// sub-step and be pushed out again, and tremble for ever.
+pub fn held<R: Real>(nodes: &Nodes<R>, segments: usize, touches: &[Touch<R>], reach: R) -> bool {
+    touches
+        .iter()
+        .filter(|touch| touch.reaches(nodes[0], reach))
+        .any(|touch| {
+            nodes[1..=segments]
+                .iter()
+                .any(|&node| touch.nearly_holds(node))
+        })
+}
+
+/// A node this close to the ground cannot get out of a body that stands on it, in metres.
+pub const PINNED_M: f64 = 1e-3;
+
+/// True where a node of the plant is inside a part during one of the sweeps. Nodes that are
+/// `pinned` are passed over: those of a plant pushed in the sub-step before that lie on the ground,
+/// where pushing again would only shuffle them.
 pub fn touched<R: Real>(
     nodes: &Nodes<R>,
     segments: usize,
     touches: &[Touch<R>],
     sweeps: u32,
     reach: R,
+    pinned: impl Fn(Vec3<R>) -> bool,
 ) -> bool {
+    let mut free = [false; MAX_NODES];
+    for (free, &node) in free.iter_mut().zip(&nodes[..=segments]) {
+        *free = !pinned(node);
+    }
     touches
         .iter()
         .filter(|touch| touch.reaches(nodes[0], reach))
@@ -24,9 +48,7 @@ pub fn touched<R: Real>(
             (1..=sweeps).any(|sweep| {
                 let share = R::of(f64::from(sweep)) / R::of(f64::from(sweeps));
                 let pose = touch.from.lerp(touch.to, share);
-                nodes[1..=segments]
-                    .iter()
-                    .any(|&node| touch.holds(&pose, node))
+                (1..=segments).any(|j| free[j] && touch.holds(&pose, nodes[j]))
             })
         })
 }

@@ -16,6 +16,9 @@ pub struct Touch<'a, R> {
     pub to: Pose<R>,
     pub radius_m: R,
     pub sweeps: u32,
+    /// A vertex that was pushed before is held while it is no farther off, in metres.
+    hold_m: R,
+    grown: &'a Solid<R>,
     /// Body and part, in the upper bits of a vertex's memory of its face.
     key: u32,
     collider: ColliderOf<'a, R>,
@@ -47,6 +50,8 @@ impl<'a, R: Real> Touch<'a, R> {
             to: contact.to.cast(),
             radius_m: R::of(contact.radius_m),
             sweeps: contact.sweeps,
+            hold_m: R::of(hold_m(part, contact.uses_cube)),
+            grown,
             key: memory_key(contact),
             collider,
         }
@@ -73,6 +78,12 @@ impl<'a, R: Real> Touch<'a, R> {
             ColliderOf::Cube(cube) => cube.inside(p),
             ColliderOf::Analytic(solid) => solid.depth(p) > R::ZERO,
         }
+    }
+
+    /// True where a vertex is inside the part at the end of the sub-step or so close to it that a
+    /// plant the body pushed before is still held.
+    pub fn nearly_holds(&self, vertex: Vec3<R>) -> bool {
+        self.grown.depth(self.to.inverse_point(vertex)) > -self.hold_m
     }
 
     /// The way out for a vertex inside the part at `pose`, with its normal turned into the anchor's
@@ -107,6 +118,16 @@ impl<'a, R: Real> Touch<'a, R> {
         })
     }
 }
+
+/// How far off a body still holds a plant it pushed before, in metres: as far as a push may
+/// overshoot, which is half a texel for a depth cube.
+pub fn hold_m(part: &Part, uses_cube: bool) -> f64 {
+    let cube = part.cube.as_ref().filter(|_| uses_cube);
+    HOLD_M + cube.map_or(0.0, |cube| 0.5 * f64::from(cube.texel_m()))
+}
+
+/// See [`hold_m`].
+const HOLD_M: f64 = 0.001;
 
 /// The body through whose face a vertex was pushed out last, from the vertex's memory; `None` if
 /// none was.

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use crate::base::{Real, Vec3};
+use crate::field::grid::ground_in_anchor;
 use crate::field::{Field, Nodes, Plant, wind_pose};
 
 use super::collide;
@@ -36,7 +37,7 @@ pub struct Grass<R: Real> {
     pub times: PassTimes,
 }
 
-/// A plant to respond: its place in the tile and the sweeps it needs.
+/// A plant to respond: its place in the tile and the sweeps it needs, 0 if it is merely held.
 #[derive(Clone, Copy, Debug)]
 struct Touched {
     place: u32,
@@ -191,6 +192,40 @@ pub fn poses<R: Real>(
     (wind, pose)
 }
 
+/// Whether a plant was touched in the sub-step before this one.
+fn was_touched(work: &Work, touched_at: u32) -> bool {
+    touched_at != 0 && work.now - touched_at == 1
+}
+
+/// A plant's wind pose of now, and the pose that bodies meet in this sub-step: the one it was left
+/// in if it was touched in the sub-step before, wherever the wind has gone since, else its pose of
+/// now.
+fn poses_before<R: Real>(
+    field: &Field,
+    work: &Work,
+    step_over_t: R,
+    tile: &TileWork,
+    plant: &Plant,
+    slab: &Slab<R>,
+    place: u32,
+) -> (Nodes<R>, Nodes<R>) {
+    if !was_touched(work, slab.touched_at[place as usize]) {
+        return poses(field, work, step_over_t, tile, plant, slab, place);
+    }
+    let segments = field.table.segments as usize;
+    let mut pose = wind_pose(
+        plant,
+        &field.table,
+        work.wind_before.bend(&tile.anchor, plant),
+    );
+    let offsets = &slab.offsets[place as usize * segments..][..segments];
+    for (node, &offset) in pose[1..].iter_mut().zip(offsets) {
+        *node += offset;
+    }
+    let wind = wind_pose(plant, &field.table, work.wind.bend(&tile.anchor, plant));
+    (wind, pose)
+}
+
 /// Rest length of a plant's segments, in metres.
 pub fn segment_length<R: Real>(plant: &Plant, segments: usize) -> R {
     R::of_f32(plant.height_m) * R::of(1.0 / segments as f64)
@@ -230,9 +265,17 @@ fn touched_plants<R: Real>(
         if sweeps == 0 {
             continue;
         }
-        let (_, pose) = poses(field, &meadow.work, step_over_t, tile, &plant, slab, place);
-        if collide::touched(&pose, segments, &touches, sweeps, reach) {
+        let (_, pose) = poses_before(field, &meadow.work, step_over_t, tile, &plant, slab, place);
+        let before = was_touched(&meadow.work, slab.touched_at[place as usize]);
+        let pinned = |p: Vec3<R>| {
+            before
+                && p.y - ground_in_anchor(&field.ground, &tile.anchor, p.x, p.z)
+                    <= R::of(collide::PINNED_M)
+        };
+        if collide::touched(&pose, segments, &touches, sweeps, reach, pinned) {
             found.push(Touched { place, sweeps });
+        } else if before && collide::held(&pose, segments, &touches, reach) {
+            found.push(Touched { place, sweeps: 0 });
         }
     }
     found
@@ -255,7 +298,8 @@ fn respond<R: Real>(
         let Some(plant) = field.plant(&tile.anchor, tile.tile, place) else {
             continue;
         };
-        let (wind, mut pose) = poses(field, &meadow.work, step_over_t, tile, &plant, slab, place);
+        let (wind, mut pose) =
+            poses_before(field, &meadow.work, step_over_t, tile, &plant, slab, place);
         let first = place as usize * segments;
         let surroundings = Place {
             ground: &field.ground,

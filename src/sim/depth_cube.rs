@@ -26,7 +26,7 @@ pub const HIDDEN: u32 = 1 << 30;
 /// Depth is stored as a fraction of the face's extent in units of 2⁻²⁹.
 pub const DEPTH_STEPS: f64 = 536_870_912.0;
 /// A way out through a hidden face counts as longer by this, in metres: more than any body's size.
-const HIDDEN_M: f64 = 1000.0;
+pub const HIDDEN_M: f64 = 1000.0;
 /// A surface point this deep inside a neighbouring part is hidden, in metres: faces that merely
 /// meet do not hide each other.
 pub const COVER_MARGIN_M: f64 = 1e-4;
@@ -325,7 +325,8 @@ fn pack_normal(n: Vec3<f32>) -> u32 {
     steps(x) | steps(y) << 16
 }
 
-fn unpack_normal<R: Real>(word: u32) -> Vec3<R> {
+/// The unit normal that a texel's second word stands for.
+pub fn unpack_normal<R: Real>(word: u32) -> Vec3<R> {
     let value = |bits: u32| R::of(f64::from(bits)) * R::of(2.0 / 65_535.0) - R::ONE;
     let (mut x, mut y) = (value(word & 0xffff), value(word >> 16));
     let z = R::ONE - x.abs() - y.abs();

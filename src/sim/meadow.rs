@@ -203,6 +203,7 @@ impl Meadow {
         let mut work = Work {
             now: self.ticks,
             wind: self.wind_at(f64::from(self.ticks) * solver.substep_s),
+            wind_before: self.work.wind,
             tiles: std::mem::take(&mut self.work.tiles),
             contacts: std::mem::take(&mut self.work.contacts),
         };

@@ -6,10 +6,11 @@
 //! thickness at once.
 //!
 //! Springs (O09 eq. 6-7, responsibilities r₁ + r₂ = 1): structural ones are replaced by lengths
-//! from root to tip, which hold exactly after one pass; bend springs join every second node and
-//! rest at the wind pose's distance. A node moves by r·2a·(‖l‖ − l₀) with a = ½(1 − e^(−2κΔt)),
-//! which is the same at any Δt, instead of k·Δt, which is not. Springs act only on plants pushed in
-//! this sub-step. WGSL twin: `shaders/relax.wgsl`.
+//! from root to tip, which hold exactly after one pass; bend springs join every second node, rest
+//! at the wind pose's distance, and act once per sweep, before the rounds. A node moves by
+//! r·2a·(‖l‖ − l₀) with a = κΔt/(1 + 2κΔt), which acts alike at any Δt, instead of k·Δt, which does
+//! not. Springs act only on plants pushed in this sub-step: one that a resting body merely holds
+//! stays as it is, so nothing trembles. WGSL twin: `shaders/relax.wgsl`.
 
 use crate::base::{Pose, Real, Vec3, vec3};
 use crate::field::grid::ground_in_anchor;
@@ -21,7 +22,7 @@ use super::contact::Touch;
 /// What the kernel needs besides the plant.
 #[derive(Clone, Copy, Debug)]
 pub struct RelaxSettings<R> {
-    /// 2a of the bend springs.
+    /// κΔt of the bend springs over a whole sub-step.
     pub bend: R,
     pub fewest_rounds: u32,
     pub most_rounds: u32,
@@ -30,9 +31,8 @@ pub struct RelaxSettings<R> {
 
 impl<R: Real> RelaxSettings<R> {
     pub fn new(solver: &crate::scene::Solver) -> Self {
-        let rate = f64::from(solver.spring_rate_per_s) * solver.substep_s;
         Self {
-            bend: R::of(1.0 - libm::exp(-2.0 * rate)),
+            bend: R::of(f64::from(solver.spring_rate_per_s) * solver.substep_s),
             fewest_rounds: solver.rounds[0],
             most_rounds: solver.rounds[1],
             strain_limit: R::of_f32(solver.strain_limit),
@@ -86,8 +86,9 @@ pub fn respond<R: Real>(
         if pushed == 0 {
             continue;
         }
+        let rate = settings.bend / R::of(f64::from(sweeps));
+        bend_springs(nodes, place, rate);
         for round in 1..=settings.most_rounds {
-            bend_springs(nodes, place, settings.bend);
             follow_pushed(nodes, pushed, place);
             pushed = lay_out(nodes, faces, &bodies, place);
             keep_above_ground(nodes, place);
@@ -169,8 +170,10 @@ fn across<R: Real>(n: Vec3<R>) -> Vec3<R> {
     (axis - n * n.dot(axis)).unit_or(Vec3::UP)
 }
 
-fn bend_springs<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, twice_a: R) {
+/// `rate` is κΔt.
+fn bend_springs<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, rate: R) {
     let half = R::of(0.5);
+    let twice_a = R::of(2.0) * rate / (R::ONE + R::of(2.0) * rate);
     for j in 0..place.segments.saturating_sub(1) {
         let rest = (place.wind[j + 2] - place.wind[j]).length();
         let across = nodes[j + 2] - nodes[j];

@@ -57,7 +57,7 @@ pub struct Reach<R> {
 }
 
 /// A way out of reach counts as longer by this, in metres: more than any body's size.
-const OUT_OF_REACH_M: f64 = 1000.0;
+pub const OUT_OF_REACH_M: f64 = 1000.0;
 
 impl<R: Real> Reach<R> {
     /// Everything can be reached.

@@ -13,6 +13,8 @@ pub struct Work {
     /// Tick at the end of the sub-step; the first is 1.
     pub now: u32,
     pub wind: WindNow,
+    /// The wind at the start of the sub-step.
+    pub wind_before: WindNow,
     /// Active tiles, in the order of their ids.
     pub tiles: Vec<TileWork>,
     /// Runs of contacts, one run per colliding tile.

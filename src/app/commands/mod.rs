@@ -1,8 +1,10 @@
 //! The commands: one file each, with its arguments and what it prints.
 
+pub mod bench;
 pub mod blade_shape;
 pub mod doctor;
 pub mod list;
+pub mod render;
 pub mod run;
 mod scene_file;
 mod schema;
@@ -24,6 +26,8 @@ pub fn run(command: Option<Command>) -> Result<Exit, Failure> {
     match command.unwrap_or_else(|| Command::View(view::Arguments::default())) {
         Command::View(arguments) => view::run(arguments, out),
         Command::Run(arguments) => run::run(&arguments, out),
+        Command::Render(arguments) => render::run(&arguments, out),
+        Command::Bench(arguments) => bench::run(&arguments, out),
         Command::BladeShape(arguments) => blade_shape::run(&arguments, out),
         Command::List(arguments) => list::run(&arguments, out),
         Command::Schema => schema::run(out),

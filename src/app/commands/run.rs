@@ -1,16 +1,18 @@
 //! `sward run`.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, IsTerminal, Write};
+use std::io::{self, BufWriter, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
+use clap::Args;
 
 use super::scene_file;
+use crate::app::device::EngineArguments;
+use crate::app::failure::exit_of_run;
+use crate::app::progress::Progress;
 use crate::app::{Failure, complain};
-use crate::run::report::{Report, Scenario};
+use crate::run::report::{Adapter, Report, Scenario};
 use crate::run::trace::Trace;
 use crate::run::{Device, Exit, Frame, RunError, RunOptions, junit, run_scene, table};
 use crate::scene::limits;
@@ -21,9 +23,8 @@ pub struct Arguments {
     /// Scene files, or names of the program's own scenes
     #[arg(value_name = "SCENE", required = true)]
     scenes: Vec<PathBuf>,
-    /// What simulates the grass; by default the gpu on a hardware adapter, else the cpu
-    #[arg(long, value_enum)]
-    engine: Option<EngineName>,
+    #[command(flatten)]
+    engine: EngineArguments,
     /// Frames per second; the motion does not depend on it
     #[arg(
         long,
@@ -55,19 +56,15 @@ pub struct Arguments {
     junit: Option<PathBuf>,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum EngineName {
-    Cpu,
-}
-
 /// Runs all scenes and prints the report.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
     let options = options(arguments)?;
-    let mut report = Report::new("cpu", None, options.hz);
-    log::info!("engine: {}", report.engine);
+    let device = arguments.engine.open()?;
+    let adapter = device.gpu().map(Adapter::of);
+    let mut report = Report::new(device.engine_name(), adapter, options.hz);
     let mut trace = open_trace(arguments)?;
     for scene in &arguments.scenes {
-        let scenario = run_one(scene, arguments, &options, &mut trace);
+        let scenario = run_one(scene, arguments, &options, &device, &mut trace);
         if let Some(error) = &scenario.error {
             complain(error);
         }
@@ -122,6 +119,7 @@ fn run_one(
     scene: &Path,
     arguments: &Arguments,
     options: &RunOptions,
+    device: &Device,
     trace: &mut Option<FileTrace>,
 ) -> Scenario {
     let name = scene_file::name(scene);
@@ -129,26 +127,21 @@ fn run_one(
         Ok(loaded) => loaded,
         Err(error) => return Scenario::broken(name, error.to_string(), Exit::Invalid),
     };
-    let bar = progress_bar(&name);
+    let bar = Progress::new(&name);
     let each_frame = |frame: &Frame<'_>| {
-        bar.set_position((frame.done * 1000.0) as u64);
+        bar.set(frame.done);
         if let Some(trace) = trace {
             trace.frame(&name, frame);
         }
     };
     let outcome = catch_unwind(AssertUnwindSafe(|| {
-        run_scene(&loaded, options, &Device::Processor, each_frame)
-            .map(|outcome| Scenario::of(&outcome))
+        run_scene(&loaded, options, device, each_frame).map(|outcome| Scenario::of(&outcome))
     }));
-    bar.finish_and_clear();
+    drop(bar);
     match outcome {
         Ok(Ok(scenario)) => scenario,
         Ok(Err(error)) => {
-            let exit = match error {
-                RunError::Meadow { .. } => Exit::Invalid,
-                RunError::Gpu { .. } => Exit::Internal,
-                RunError::Rate(_) => Exit::Usage,
-            };
+            let exit = exit_of_run(&error);
             Scenario::broken(name, error.to_string(), exit)
         }
         Err(_) => {
@@ -156,17 +149,6 @@ fn run_one(
             Scenario::broken(name, error, Exit::Internal)
         }
     }
-}
-
-fn progress_bar(name: &str) -> ProgressBar {
-    if !io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent}% {eta}")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(1000)
-        .with_style(style)
-        .with_message(name.to_owned())
 }
 
 fn print_json(report: &Report, out: &mut impl Write) -> io::Result<()> {

@@ -1,0 +1,210 @@
+//! `sward bench`.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::scene_file;
+use crate::app::Failure;
+use crate::app::device::EngineArguments;
+use crate::app::progress::Progress;
+use crate::run::Exit;
+use crate::run::bench::{TilesBench, bench_tiles, tiles::Row};
+
+/// Measure speed, with the error beside it
+#[derive(Args, Debug)]
+pub struct Arguments {
+    /// What is measured
+    #[arg(value_enum)]
+    what: Bench,
+    #[command(flatten)]
+    engine: EngineArguments,
+    /// Print the results as JSON
+    #[arg(long)]
+    json: bool,
+    /// Also write a CSV file per adapter into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// End with exit code 1 if a promise is not kept
+    #[arg(long)]
+    check: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Bench {
+    /// Cost by the number of tiles, in total and active
+    Tiles,
+}
+
+/// Scene of a million blades.
+const MILLION: &str = "million_blades";
+
+/// Runs the bench and prints its tables.
+pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
+    let device = arguments.engine.open()?;
+    let Bench::Tiles = arguments.what;
+    let million = scene_file::load(Path::new(MILLION), &[])?;
+    let progress = Progress::new("bench tiles");
+    let bench = bench_tiles(&million, &device, |done| progress.set(done))?;
+    drop(progress);
+    if let Some(folder) = &arguments.out {
+        write_csv(&bench, folder)?;
+    }
+    if arguments.json {
+        serde_json::to_writer_pretty(&mut *out, &bench)?;
+        writeln!(out)?;
+    } else {
+        write_tables(&bench, out)?;
+    }
+    let failed = arguments.check && !bench.all_kept();
+    Ok(if failed { Exit::Failed } else { Exit::Ok })
+}
+
+fn write_tables(bench: &TilesBench, out: &mut impl Write) -> io::Result<()> {
+    let machine = &bench.machine;
+    write!(
+        out,
+        "{}, {} threads",
+        machine.cpu.as_deref().unwrap_or("unknown processor"),
+        machine.threads
+    )?;
+    if let Some(load) = machine.load_average {
+        write!(out, ", load average {load:.2}")?;
+    }
+    write!(out, "\n{} engine", bench.engine)?;
+    if let Some(adapter) = &bench.adapter {
+        write!(out, " on {} ({})", adapter.name, adapter.driver)?;
+    }
+    writeln!(out, "\n")?;
+    write_million(bench, out)?;
+    writeln!(out, "\nThe same work in larger meadows")?;
+    write_rows(&bench.total_tiles, out)?;
+    writeln!(out, "\nMore work in one meadow")?;
+    write_rows(&bench.active_tiles, out)?;
+    if let Some(line) = &bench.line {
+        writeln!(
+            out,
+            "ms per sub-step = {:.4} + {:.5} per active tile, R² {:.4}",
+            line.fixed_ms, line.ms_per_tile, line.r_squared
+        )?;
+    }
+    writeln!(out)?;
+    for limit in &bench.limits {
+        let verdict = if limit.kept { "ok  " } else { "MISS" };
+        writeln!(
+            out,
+            "{verdict}  {}: {:.4} of {} {}",
+            limit.what, limit.measured, limit.limit, limit.unit
+        )?;
+    }
+    Ok(())
+}
+
+fn write_million(bench: &TilesBench, out: &mut impl Write) -> io::Result<()> {
+    let million = &bench.million_blades;
+    writeln!(
+        out,
+        "{} blades on {} tiles, one rolling ball, at most {} tiles active\n  \
+         {:.2} simulated seconds per second ({:.2} s, {} sub-steps; median {:.4} ms, least {:.4})",
+        million.blades,
+        million.total_tiles,
+        million.active_tiles_peak,
+        million.seconds_per_second,
+        million.seconds_simulated,
+        million.ticks,
+        million.tick_ms_median,
+        million.tick_ms_min,
+    )?;
+    let memory = match million.peak_memory_bytes {
+        Some(bytes) => format!("{:.1} MB", bytes as f64 * 1e-6),
+        None => "unknown".to_owned(),
+    };
+    writeln!(
+        out,
+        "  peak memory of the process {memory}, grass state {} bytes\n  \
+         penetration {:.3} mm at most, strain {:.4} at most",
+        million.state_bytes_peak,
+        million.errors.max_penetration_m * 1e3,
+        million.errors.max_strain
+    )
+}
+
+fn write_rows(rows: &[Row], out: &mut impl Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "{:>8} {:>6} {:>8} {:>10} {:>10} {:>4} {:>7} {:>12} {:>8}",
+        "tiles", "balls", "active", "median ms", "least ms", "n", "ratio", "depth mm", "strain"
+    )?;
+    for row in rows {
+        writeln!(
+            out,
+            "{:>8} {:>6} {:>8.1} {:>10.4} {:>10.4} {:>4} {:>7.3} {:>12.3} {:>8.4}",
+            row.total_tiles,
+            row.balls,
+            row.active_tiles_mean,
+            row.tick_ms_median,
+            row.tick_ms_min,
+            row.rounds,
+            row.ratio,
+            row.errors.max_penetration_m * 1e3,
+            row.errors.max_strain
+        )?;
+    }
+    Ok(())
+}
+
+/// Writes every row into `tiles-ENGINE-ADAPTER.csv`.
+fn write_csv(bench: &TilesBench, folder: &Path) -> Result<(), Failure> {
+    let million = &bench.million_blades;
+    let mut text = String::from(
+        "table,total_tiles,balls,active_tiles,tick_ms_median,tick_ms_min,n,ratio,\
+         max_penetration_m,max_strain\n",
+    );
+    text += &format!(
+        "million_blades,{},1,{},{},{},{},,{},{}\n",
+        million.total_tiles,
+        million.active_tiles_peak,
+        million.tick_ms_median,
+        million.tick_ms_min,
+        million.ticks,
+        million.errors.max_penetration_m,
+        million.errors.max_strain
+    );
+    let tables = [
+        ("total_tiles", &bench.total_tiles),
+        ("active_tiles", &bench.active_tiles),
+    ];
+    for (table, row) in tables
+        .iter()
+        .flat_map(|(t, rows)| rows.iter().map(move |r| (t, r)))
+    {
+        text += &format!(
+            "{table},{},{},{},{},{},{},{},{},{}\n",
+            row.total_tiles,
+            row.balls,
+            row.active_tiles_mean,
+            row.tick_ms_median,
+            row.tick_ms_min,
+            row.rounds,
+            row.ratio,
+            row.errors.max_penetration_m,
+            row.errors.max_strain
+        );
+    }
+    fs::create_dir_all(folder).map_err(|error| Failure::file(folder, error))?;
+    let adapter = bench.adapter.as_ref().map(|adapter| adapter.name.as_str());
+    let runs_on = adapter
+        .or(bench.machine.cpu.as_deref())
+        .unwrap_or("unknown");
+    let file = folder.join(format!("tiles-{}-{}.csv", bench.engine, file_name(runs_on)));
+    fs::write(&file, text).map_err(|error| Failure::file(&file, error))
+}
+
+/// A name with nothing in it that a file system might refuse.
+fn file_name(name: &str) -> String {
+    let words = name.split(|c: char| !c.is_ascii_alphanumeric());
+    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    words.join("-").to_lowercase()
+}

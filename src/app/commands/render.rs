@@ -1,0 +1,241 @@
+//! `sward render`.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::scene_file;
+use crate::app::Failure;
+use crate::app::device::EngineArguments;
+use crate::app::progress::Progress;
+use crate::gpu::Gpu;
+use crate::render::{Animation, Picture, PictureTarget};
+use crate::run::{Exit, Stage};
+use crate::scene::limits;
+
+/// Draw pictures of a scene without a window
+#[derive(Args, Debug)]
+pub struct Arguments {
+    /// Scene file, or name of one of the program's own scenes
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// Simulated time of the first picture
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    at: f64,
+    /// Draw N pictures, as FILE_0000.png and so on or as one animation where FILE ends in .apng
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    frames: u32,
+    /// Pictures per simulated second
+    #[arg(long, value_name = "N", default_value_t = 30)]
+    hz: u16,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    size: [u32; 2],
+    /// One of the scene's cameras; by default the first
+    #[arg(long, value_name = "NAME")]
+    camera: Option<String>,
+    /// Show which tiles are awake
+    #[arg(long)]
+    overlay: bool,
+    #[command(flatten)]
+    engine: EngineArguments,
+    /// Another folder in which assets are looked up; may be repeated
+    #[arg(long, value_name = "DIR")]
+    assets: Vec<PathBuf>,
+    /// The picture: a name that ends in .png, or in .apng for an animation
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// Longest side of a picture, in pixels.
+const MOST_PIXELS: u32 = 8192;
+/// Most pictures of a sequence: their names count to 9999.
+const MOST_FRAMES: u32 = 10_000;
+
+/// Draws the pictures and prints the names of the files.
+pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
+    check(arguments)?;
+    let animated = is_animation(&arguments.out)?;
+    let loaded = scene_file::load(&arguments.scene, &arguments.assets)?;
+    let gpu = Gpu::headless()?;
+    let target = PictureTarget::new(&gpu, arguments.size)?;
+    let choice = arguments.engine.choice()?;
+    let mut stage = Stage::new(&gpu, &loaded, choice, PictureTarget::FORMAT, arguments.size)?;
+    stage.camera(arguments.camera.as_deref())?;
+    let mut shoot = Shoot {
+        arguments,
+        gpu: &gpu,
+        target,
+        stage: &mut stage,
+        progress: Progress::new(&loaded.name),
+    };
+    let files = if animated {
+        vec![shoot.animation()?]
+    } else {
+        shoot.pictures()?
+    };
+    drop(shoot);
+    for file in files {
+        writeln!(out, "{}", file.display())?;
+    }
+    Ok(Exit::Ok)
+}
+
+fn check(arguments: &Arguments) -> Result<(), Failure> {
+    let usage = |text| Err(Failure::Usage(text));
+    let Arguments { at, frames, hz, .. } = arguments;
+    if !(0.0..=limits::DURATION.max).contains(at) {
+        return usage(format!(
+            "--at {at}: give 0 to {} seconds",
+            limits::DURATION.max
+        ));
+    }
+    if !(1..=MOST_FRAMES).contains(frames) {
+        return usage(format!("--frames {frames}: give 1 to {MOST_FRAMES}"));
+    }
+    if !(1..=1000).contains(hz) {
+        return usage(format!("--hz {hz}: give 1 to 1000 pictures per second"));
+    }
+    Ok(())
+}
+
+/// Parses a size such as `1280x720`.
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once('x').and_then(|(width, height)| {
+        let size: [u32; 2] = [width.parse().ok()?, height.parse().ok()?];
+        let fits = |side: &u32| (1..=MOST_PIXELS).contains(side);
+        size.iter().all(fits).then_some(size)
+    });
+    sides.ok_or_else(|| format!("give WIDTHxHEIGHT, each 1 to {MOST_PIXELS}, such as 1280x720"))
+}
+
+/// Whether a file name asks for an animation.
+fn is_animation(file: &Path) -> Result<bool, Failure> {
+    match file.extension().and_then(|ending| ending.to_str()) {
+        Some("png") => Ok(false),
+        Some("apng") => Ok(true),
+        _ => Err(Failure::Usage(format!(
+            "--out {}: give a name that ends in .png or .apng",
+            file.display()
+        ))),
+    }
+}
+
+/// A stage that is photographed.
+struct Shoot<'a> {
+    arguments: &'a Arguments,
+    gpu: &'a Gpu,
+    target: PictureTarget,
+    stage: &'a mut Stage,
+    progress: Progress,
+}
+
+impl Shoot<'_> {
+    /// One file per picture.
+    fn pictures(&mut self) -> Result<Vec<PathBuf>, Failure> {
+        let Arguments { frames, out, .. } = self.arguments;
+        let mut files = Vec::new();
+        for frame in 0..*frames {
+            let file = match frames {
+                1 => out.clone(),
+                _ => numbered(out, frame),
+            };
+            let picture = self.picture(frame)?;
+            let png = with_texts(&self.texts(), |texts| picture.to_png(texts))?;
+            std::fs::write(&file, png).map_err(|error| Failure::file(&file, error))?;
+            files.push(file);
+        }
+        Ok(files)
+    }
+
+    /// All pictures in one file.
+    fn animation(&mut self) -> Result<PathBuf, Failure> {
+        let Arguments {
+            frames,
+            hz,
+            size,
+            out,
+            ..
+        } = self.arguments;
+        let first = self.picture(0)?;
+        let file = File::create(out).map_err(|error| Failure::file(out, error))?;
+        let mut animation = with_texts(&self.texts(), |texts| {
+            Animation::new(BufWriter::new(file), *size, *frames, *hz, texts)
+        })?;
+        animation.add(&first)?;
+        for frame in 1..*frames {
+            animation.add(&self.picture(frame)?)?;
+        }
+        animation.finish()?;
+        Ok(out.clone())
+    }
+
+    /// Simulates up to a frame and draws it.
+    fn picture(&mut self, frame: u32) -> Result<Picture, Failure> {
+        let Arguments { at, frames, hz, .. } = self.arguments;
+        let time_s = at + f64::from(frame) / f64::from(*hz);
+        let last_s = at + f64::from(*frames) / f64::from(*hz);
+        let substep_s = self.stage.meadow().scene.solver.substep_s;
+        // A millionth of a sub-step forgives the rounding of the division.
+        let ticks = (time_s / substep_s + 1e-6) as u32;
+        while self.stage.meadow().ticks < ticks {
+            self.stage.tick()?;
+            self.progress.set(self.stage.meadow().time_s() / last_s);
+        }
+        let view = self.stage.camera(self.arguments.camera.as_deref())?;
+        let overlay = self.arguments.overlay;
+        (self.stage).draw(self.gpu, &view, &self.target.view, overlay)?;
+        Ok(self.target.read(self.gpu)?)
+    }
+
+    /// What a file says of its first picture.
+    fn texts(&self) -> [(&'static str, String); 8] {
+        let (meadow, stage) = (self.stage.meadow(), &self.stage);
+        [
+            ("Software", "sward".to_owned()),
+            ("Version", env!("CARGO_PKG_VERSION").to_owned()),
+            ("Scene", stage.loaded().name.clone()),
+            ("Time", format!("{:.6} s", meadow.time_s())),
+            ("Tick", meadow.ticks.to_string()),
+            ("Seed", meadow.scene.grass.seed.to_string()),
+            ("Engine", stage.engine().name().to_owned()),
+            ("Adapter", self.gpu.adapter.name.clone()),
+        ]
+    }
+}
+
+/// Lends texts as the encoders take them.
+fn with_texts<T>(texts: &[(&'static str, String)], encode: impl FnOnce(&[(&str, &str)]) -> T) -> T {
+    let lent: Vec<(&str, &str)> = texts
+        .iter()
+        .map(|(key, text)| (*key, text.as_str()))
+        .collect();
+    encode(&lent)
+}
+
+/// `FILE_0000.png` from `FILE.png`.
+fn numbered(file: &Path, frame: u32) -> PathBuf {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    file.with_file_name(format!("{stem}_{frame:04}.png"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_two_numbers_within_limits() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        for wrong in ["", "640", "0x1", "8193x1", "640x", "axb", "-1x5", "1x2x3"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn files_of_a_sequence_are_numbered() {
+        let file = numbered(Path::new("a/b.c.png"), 7);
+        assert_eq!(file, Path::new("a/b.c_0007.png"));
+    }
+}

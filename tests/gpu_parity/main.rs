@@ -1,0 +1,87 @@
+//! Each pass on the device against its twin in Rust, from the same input. Trials need a graphics
+//! adapter: without one they are ignored, and with `SWARD_REQUIRE_GPU=1` the missing adapter fails.
+
+mod compare;
+mod cubes;
+mod meadows;
+mod passes;
+mod plants;
+mod probe;
+mod runs;
+
+use std::sync::Arc;
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use sward::gpu::{Gpu, GrassKernels};
+
+/// What a trial runs on.
+pub struct Device {
+    pub gpu: Gpu,
+    pub kernels: GrassKernels,
+}
+
+type Check = fn(&Device) -> Result<(), Failed>;
+
+const CHECKS: &[(&str, Check)] = &[
+    ("random_words_are_equal", plants::random_words_are_equal),
+    ("plants_are_equal", plants::plants_are_equal),
+    ("wind_poses_agree", plants::wind_poses_agree),
+    ("cubes_of_closed_forms_agree", cubes::closed_forms_agree),
+    ("hidden_faces_agree", cubes::hidden_faces_agree),
+    ("a_tick_agrees_with_cubes", passes::a_tick_agrees_with_cubes),
+    (
+        "a_tick_agrees_with_closed_forms",
+        passes::a_tick_agrees_with_closed_forms,
+    ),
+    (
+        "every_kind_of_solid_agrees",
+        passes::every_kind_of_solid_agrees,
+    ),
+    ("drawn_nodes_agree", passes::drawn_nodes_agree),
+    (
+        "state_survives_upload_and_growth",
+        passes::state_survives_upload_and_growth,
+    ),
+    (
+        "a_rolled_track_agrees_with_cubes",
+        runs::a_rolled_track_agrees_with_cubes,
+    ),
+    (
+        "a_rolled_track_agrees_with_closed_forms",
+        runs::a_rolled_track_agrees_with_closed_forms,
+    ),
+    (
+        "a_still_meadow_dispatches_nothing",
+        runs::a_still_meadow_dispatches_nothing,
+    ),
+    (
+        "a_full_device_refuses_and_counts",
+        runs::a_full_device_refuses_and_counts,
+    ),
+];
+
+fn open() -> Result<Device, String> {
+    let gpu = Gpu::headless().map_err(|error| error.to_string())?;
+    let kernels = GrassKernels::new(&gpu).map_err(|error| error.to_string())?;
+    println!("adapter: {} ({})", gpu.adapter.name, gpu.adapter.driver);
+    Ok(Device { gpu, kernels })
+}
+
+fn main() {
+    let arguments = Arguments::from_args();
+    let required = std::env::var_os("SWARD_REQUIRE_GPU").is_some_and(|v| v == "1");
+    let device = Arc::new(open());
+    let missing = matches!(&*device, Err(reason) if reason.contains("no graphics adapter"));
+    let trials = CHECKS
+        .iter()
+        .map(|&(name, check)| {
+            let device = Arc::clone(&device);
+            let run = move || match &*device {
+                Ok(device) => check(device),
+                Err(reason) => Err(reason.into()),
+            };
+            Trial::test(name, run).with_ignored_flag(missing && !required)
+        })
+        .collect();
+    libtest_mimic::run(&arguments, trials).exit();
+}

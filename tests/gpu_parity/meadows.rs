@@ -1,0 +1,92 @@
+//! Small meadows for the trials.
+
+use std::f32::consts::TAU;
+
+use libtest_mimic::Failed;
+use sward::field::Field;
+use sward::scene::{Collider, Grass, LoadedScene, Solver, Species, parse_scene};
+use sward::sim::Meadow;
+use sward::terrain::HeightGrid;
+
+/// A field on bumpy ground with two kinds of plants and a density that is no whole number.
+pub fn bumpy_field(solver: &Solver) -> Result<Field, Failed> {
+    let mut ground = HeightGrid::flat(14, 11, 1.0);
+    for (n, height) in ground.heights_m.iter_mut().enumerate() {
+        *height = 2.3 + 0.8 * (TAU * n as f32 * 0.137).sin();
+    }
+    let grass = Grass {
+        density_per_m2: 203.7,
+        seed: 77,
+        species: vec![
+            Species::default(),
+            Species {
+                name: "fescue".into(),
+                share: 0.4,
+                height_m: [0.08, 0.2],
+                stiffness: [50.0, 400.0],
+                flexibility: 0.6,
+                ..Species::default()
+            },
+        ],
+    };
+    Ok(Field::new(ground, &grass, solver)?)
+}
+
+/// The scene file of the rolling ball.
+fn ball_roll() -> Result<LoadedScene, Failed> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/ball_roll.ron");
+    Ok(sward::scene::load_scene(path.as_ref(), &[])?)
+}
+
+/// The rolling ball with every body tested in one way.
+pub fn rolling_ball(collider: Collider) -> Result<Meadow, Failed> {
+    let mut loaded = ball_roll()?;
+    for body in &mut loaded.scene.bodies {
+        body.collider = collider;
+    }
+    Ok(Meadow::new(loaded.scene, &loaded.assets)?)
+}
+
+/// One body of each kind, pushed through the grass on hilly ground side by side.
+pub fn parade(collider: &str) -> Result<Meadow, Failed> {
+    let shapes = [
+        "Ball(radius_m: 0.14)",
+        "Box(size_m: (0.3, 0.24, 0.36))",
+        "Capsule(radius_m: 0.1, length_m: 0.2)",
+        "Cylinder(radius_m: 0.13, height_m: 0.28)",
+        "ConvexHull(points_m: [(0.2, 0, 0), (-0.2, 0.02, 0), (0, 0.18, 0.03), (0, -0.16, 0), \
+         (0.02, 0, 0.22), (0, 0.03, -0.2)])",
+        "Compound(parts: [(shape: Box(size_m: (0.3, 0.1, 0.1))), \
+         (shape: Box(size_m: (0.1, 0.3, 0.1)), position_m: (0.05, 0, 0.02), rotation_deg: (0, 20, 10))])",
+    ];
+    let mut bodies = String::new();
+    for (n, shape) in shapes.iter().enumerate() {
+        let z = -2.2 + 0.9 * n as f64;
+        let way = |at: f64, x: f64, turn: f64| {
+            format!(
+                "(at_s: {at}, position_m: ({x}, 0.12, {z}), rotation_deg: ({turn}, {}, 12))",
+                turn * 0.5
+            )
+        };
+        bodies.push_str(&format!(
+            "(name: \"b{n}\", shape: {shape}, position_m: (-1.4, 0.12, {z}), above_ground: true, \
+             collider: {collider}, motion: Path(waypoints: [{}, {}])),",
+            way(0.0, -1.4, 0.0),
+            way(1.0, 1.1, 90.0),
+        ));
+    }
+    let text = format!(
+        "(duration_s: 1, \
+          terrain: (ground: Rolling(size_m: (8, 8), amplitude_m: 0.15, wavelength_m: 5, seed: 3)), \
+          bodies: [{bodies}])"
+    );
+    let loaded = parse_scene("parade", &text, &[])?;
+    Ok(Meadow::new(loaded.scene, &loaded.assets)?)
+}
+
+/// The scene in which nothing moves.
+pub fn still() -> Result<Meadow, Failed> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/still.ron");
+    let loaded = sward::scene::load_scene(path.as_ref(), &[])?;
+    Ok(Meadow::new(loaded.scene, &loaded.assets)?)
+}

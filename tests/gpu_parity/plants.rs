@@ -1,0 +1,224 @@
+//! Random words, plants and wind poses: what a plant is before anything touches it.
+
+use libtest_mimic::Failed;
+use sward::base::philox::philox2x32;
+use sward::field::{Field, WindNow, wind_pose};
+use sward::gpu::field_data::TileRecord;
+use sward::scene::{Solver, Wind};
+
+use super::Device;
+use super::compare::{Difference, distance, ensure, ulps};
+use super::meadows::bumpy_field;
+use super::probe::{self, ROWS};
+
+const WORDS: &str = r#"
+#import "shared/field.wgsl"
+#import "shared/philox.wgsl"
+#import "shared/tile.wgsl"
+@group(1) @binding(1) var<storage, read> tiles: array<TileRecord>;
+@group(1) @binding(7) var<storage, read_write> rows: array<vec4u>;
+
+@compute @workgroup_size(1)
+fn probe(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let n = group.y * groups.x + group.x;
+    let counter = vec2u(n * 2654435761u + tiles[group.y].tile, n ^ 0xffffffffu);
+    let seven = philox2x32(counter, n * 97u, 7u);
+    let three = philox2x32(counter, n * 97u, 3u);
+    var random = pcg_from_words(seven);
+    let first = pcg_next(&random);
+    let row = n * 24u;
+    rows[row] = vec4u(seven, three);
+    rows[row + 1u] = vec4u(first, pcg_next(&random), bitcast<u32>(unit(first)), 0u);
+}
+"#;
+
+pub fn random_words_are_equal(device: &Device) -> Result<(), Failed> {
+    let field = bumpy_field(&Solver::default())?;
+    let wind = WindNow::default();
+    let tile = TileRecord::resting(&field, 0);
+    let count = 4096;
+    let rows = probe::run(&device.gpu, WORDS, &field, &wind, &[tile], count)?;
+    for (n, rows) in (0..count).zip(rows.chunks_exact(ROWS)) {
+        let counter = [n.wrapping_mul(2_654_435_761), n ^ u32::MAX];
+        let seven = philox2x32(counter, n * 97, 7);
+        let three = philox2x32(counter, n * 97, 3);
+        let mut random = sward::base::philox::Pcg::from_words(seven);
+        let first = random.next_word();
+        let unit = sward::base::philox::unit(first).to_bits();
+        let want = [
+            [seven[0], seven[1], three[0], three[1]],
+            [first, random.next_word(), unit, 0],
+        ];
+        ensure(rows[..2] == want, || {
+            format!("word {n}: {:x?} for {want:x?}", &rows[..2])
+        })?;
+    }
+    Ok(())
+}
+
+const PLANTS: &str = r#"
+#import "shared/plant.wgsl"
+#import "shared/pose.wgsl"
+#import "shared/tile.wgsl"
+#import "shared/wind.wgsl"
+@group(1) @binding(1) var<storage, read> tiles: array<TileRecord>;
+@group(1) @binding(7) var<storage, read_write> rows: array<vec4u>;
+
+@compute @workgroup_size(1)
+fn probe(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let row = (group.y * groups.x + group.x) * 24u;
+    let tile = tiles[group.y];
+    let plant = plant_at(tile, group.x);
+    rows[row] = vec4u(bitcast<vec3u>(plant.root), u32(plant.grows));
+    if !plant.grows {
+        return;
+    }
+    let drawn = vec4f(plant.height_m, plant.width_m, plant.stiffness, plant.lean);
+    rows[row + 1u] = bitcast<vec4u>(drawn);
+    rows[row + 2u] = vec4u(bitcast<vec2u>(plant.azimuth), plant.species, plant.shade);
+    let bend = wind_bend(tile, plant);
+    rows[row + 3u] = bitcast<vec4u>(vec4f(plant.flexibility, plant.flutter_turns, bend));
+    var nodes = wind_pose(plant, bend);
+    for (var j = 0u; j <= field.segments; j++) {
+        let one = wind_pose_at(plant, bend, j);
+        rows[row + 4u + j] = vec4u(
+            bitcast<vec3u>(nodes[j]),
+            bitcast<u32>(distance(one.place, nodes[j]) + abs(1.0 - length(one.direction))),
+        );
+    }
+}
+"#;
+
+struct Probed {
+    field: Field,
+    wind: WindNow,
+    rows: Vec<[u32; 4]>,
+}
+
+/// Every plant of a field on bumpy ground, as the device sees it.
+fn probed(device: &Device, tile_m: f32) -> Result<Probed, Failed> {
+    let solver = Solver {
+        tile_m,
+        ..Solver::default()
+    };
+    let field = bumpy_field(&solver)?;
+    let anchor_m = f64::from(field.grid.cell_m) * 4.0;
+    let wind = WindNow::at(&Wind::default(), 1234.5, anchor_m, 1.0);
+    let tiles: Vec<_> = (0..field.grid.tile_count())
+        .map(|tile| TileRecord::resting(&field, tile))
+        .collect();
+    let plants = field.grid.plants_per_tile();
+    let rows = probe::run(&device.gpu, PLANTS, &field, &wind, &tiles, plants)?;
+    Ok(Probed { field, wind, rows })
+}
+
+impl Probed {
+    /// Calls `each` with every plant's place, what Rust makes of it, and the device's rows.
+    fn each(
+        &self,
+        mut each: impl FnMut(
+            &str,
+            &sward::field::Anchor,
+            Option<sward::field::Plant>,
+            &[[u32; 4]],
+        ) -> Result<(), Failed>,
+    ) -> Result<(), Failed> {
+        let plants = self.field.grid.plants_per_tile();
+        for (n, rows) in self.rows.chunks_exact(ROWS).enumerate() {
+            let (tile, place) = (n as u32 / plants, n as u32 % plants);
+            let anchor = self.field.grid.anchor_of(tile, &self.field.ground);
+            let plant = self.field.plant(&anchor, tile, place);
+            each(&format!("tile {tile} plant {place}"), &anchor, plant, rows)?;
+        }
+        Ok(())
+    }
+}
+
+/// Integers and roots' x and z bit for bit. Numbers drawn as low + span·unit: the device may fuse
+/// the product into the sum, which saves one rounding of at most half an ulp of a product that is
+/// not larger than the sum, and the sums' own roundings then differ by at most one step: 2 ulp.
+/// The azimuth's polynomial is stated to be within 2.5e-7 on either side: 5e-7. Heights of roots: a
+/// sum of three terms of at most h = 1.6 m (the range of the ground), six roundings of 2⁻²⁴·2h on
+/// either side: 2.3e-6 m.
+pub fn plants_are_equal(device: &Device) -> Result<(), Failed> {
+    let probed = probed(device, 1.0)?;
+    let mut drawn = Difference::new("drawn numbers", "ulp");
+    let mut azimuth = Difference::new("azimuth", "");
+    let mut heights = Difference::new("root height", "m");
+    let mut species = [0_u32; 2];
+    let mut bare = 0_u32;
+    probed.each(|name, _, plant, rows| {
+        let float = |row: usize, n: usize| f32::from_bits(rows[row][n]);
+        ensure((rows[0][3] == 1) == plant.is_some(), || {
+            format!("{name}: grows on one side only")
+        })?;
+        let Some(plant) = plant else {
+            bare += 1;
+            return Ok(());
+        };
+        species[plant.species as usize] += 1;
+        let got = [rows[2][2], rows[2][3], rows[0][0], rows[0][2], rows[3][1]];
+        let [x, y, z] = plant.root_in_anchor;
+        let want = [
+            plant.species,
+            plant.shade,
+            x.to_bits(),
+            z.to_bits(),
+            plant.flutter_turns.to_bits(),
+        ];
+        ensure(got == want, || format!("{name}: {got:x?} for {want:x?}"))?;
+        let numbers = [plant.height_m, plant.width_m, plant.stiffness, plant.lean];
+        for (n, number) in numbers.into_iter().enumerate() {
+            drawn.add(f64::from(ulps(number, float(1, n))), || name.to_owned());
+        }
+        for n in 0..2 {
+            let off = f64::from(plant.azimuth[n]) - f64::from(float(2, n));
+            azimuth.add(off.abs(), || name.to_owned());
+        }
+        heights.add((f64::from(y) - f64::from(float(0, 1))).abs(), || {
+            name.to_owned()
+        });
+        Ok(())
+    })?;
+    println!("{species:?} plants of each kind, {bare} bare places");
+    ensure(species.iter().all(|&n| n > 1000) && bare > 100, || {
+        format!("too few cases: {species:?}, {bare} bare")
+    })?;
+    drawn.check(2.0)?;
+    azimuth.check(5e-7)?;
+    heights.check(2.3e-6)
+}
+
+/// A segment's direction before it is made a unit vector is a sum of table entries of at most 1
+/// (four roundings), times the azimuth (5e-7 on it, see above), plus the wind's bend. A gust's phase
+/// is at most 4 turns + 1, known to 2⁻²² turns, so its sine to 2π·2⁻²² + 5e-7 = 2e-6 on either
+/// side; of that the bend takes gust + flutter = 0.14. In all 4·2⁻²³ + 5e-7 + 2·0.14·2e-6 =
+/// 1.5e-6 per component, 2.7e-6 in three. Eight segments of 0.42/8 m add up to 0.42·2.7e-6 =
+/// 1.1e-6 m, and eight sums of coordinates below 4 m to 8·2⁻²³·2 = 1.9e-6 m, on top of the root's
+/// 2.3e-6 m: 5.3e-6 m.
+pub fn wind_poses_agree(device: &Device) -> Result<(), Failed> {
+    let mut nodes = Difference::new("wind pose", "m");
+    let mut single = Difference::new("single nodes and directions", "m");
+    for tile_m in [0.5, 2.0] {
+        let probed = probed(device, tile_m)?;
+        let segments = probed.field.table.segments as usize;
+        probed.each(|name, anchor, plant, rows| {
+            let Some(plant) = plant else {
+                return Ok(());
+            };
+            let bend = probed.wind.bend::<f32>(anchor, &plant);
+            let want = wind_pose(&plant, &probed.field.table, bend);
+            for j in 0..=segments {
+                let [x, y, z, off] = rows[4 + j].map(f32::from_bits);
+                nodes.add(distance([x, y, z], want[j].to_f32()), || {
+                    format!("{name} node {j}")
+                });
+                single.add(f64::from(off), || format!("{name} node {j}"));
+            }
+            Ok(())
+        })?;
+    }
+    nodes.check(5.3e-6)?;
+    // The same sums in one shader: equal but for how they are fused, and a direction's length.
+    single.check(1.9e-6 + 4.0 * f64::from(f32::EPSILON))
+}

@@ -1,0 +1,168 @@
+//! Whole runs on both engines, each from its own state.
+
+use libtest_mimic::Failed;
+use sward::gpu::{Dispatches, GpuGrass, GpuState};
+use sward::scene::Collider;
+use sward::sim::measure::{self, GrassState, Standing};
+use sward::sim::{Grass, Meadow};
+
+use super::Device;
+use super::compare::ensure;
+use super::meadows::{rolling_ball, still};
+
+/// Promised: root mean square of the nodes' differences, and the share of plants that slid to the
+/// other side of the body.
+const RMS_M: f64 = 1e-4;
+const FLIPPED_SHARE: f64 = 1e-3;
+/// A plant is on another side if its tip stands further from its twin's than any rounding or a whole
+/// texel of the ball's cube (0.3 m / 64) explains.
+const FLIPPED_M: f64 = 0.02;
+
+/// Every plant of the active tiles, tile after tile.
+fn plants(meadow: &Meadow, state: &impl GrassState<f32>) -> Vec<Standing<f32>> {
+    let tiles = meadow.work.tiles.iter();
+    tiles
+        .filter_map(|tile| Some(measure::standing(meadow, tile, state.slab(tile.slab)?)))
+        .flatten()
+        .collect()
+}
+
+#[derive(Default)]
+struct Tracks {
+    squares: f64,
+    nodes: u64,
+    plants: u64,
+    flipped: u64,
+    worst_m: f64,
+}
+
+impl Tracks {
+    fn add(&mut self, ours: &[Standing<f32>], theirs: &[Standing<f32>]) -> Result<(), Failed> {
+        ensure(ours.len() == theirs.len(), || {
+            format!("{} plants against {}", ours.len(), theirs.len())
+        })?;
+        for (a, b) in ours.iter().zip(theirs) {
+            if a.touched_at == 0 && b.touched_at == 0 {
+                continue;
+            }
+            self.plants += 1;
+            let off: Vec<f64> = a
+                .nodes
+                .iter()
+                .zip(&b.nodes)
+                .map(|(&a, &b)| f64::from((a - b).length()))
+                .collect();
+            let most = off.iter().copied().fold(0.0, f64::max);
+            if most > FLIPPED_M {
+                self.flipped += 1;
+                continue;
+            }
+            self.worst_m = self.worst_m.max(most);
+            self.squares += off.iter().map(|d| d * d).sum::<f64>();
+            self.nodes += off.len() as u64;
+        }
+        Ok(())
+    }
+
+    fn check(&self) -> Result<(), Failed> {
+        let rms = (self.squares / self.nodes.max(1) as f64).sqrt();
+        let share = self.flipped as f64 / self.plants.max(1) as f64;
+        let text = format!(
+            "rms {rms:.2e} m (limit {RMS_M:.0e}), max {:.2e} m over {} plants; {} on another side \
+             ({share:.2e}, limit {FLIPPED_SHARE:.0e})",
+            self.worst_m, self.plants, self.flipped
+        );
+        println!("{text}");
+        ensure(
+            self.plants > 1000 && rms <= RMS_M && share <= FLIPPED_SHARE,
+            || text,
+        )
+    }
+}
+
+/// Runs the rolling ball on both engines until it is gone and the grass rests again.
+fn compare_tracks(device: &Device, collider: Collider) -> Result<(), Failed> {
+    let (mut here, mut there) = (rolling_ball(collider)?, rolling_ball(collider)?);
+    let mut cpu = Grass::<f32>::new();
+    let mut gpu = GpuGrass::new(&device.gpu, &device.kernels, &mut there)?;
+    let mut tracks = Tracks::default();
+    let ticks = (here.scene.duration_s / here.scene.solver.substep_s).round() as u32;
+    while here.ticks < ticks {
+        sward::sim::tick(&mut here, &mut cpu)?;
+        sward::gpu::tick(&mut there, &mut gpu)?;
+        if here.ticks % 30 == 0 {
+            let state: GpuState = gpu.read_state(&there)?;
+            tracks.add(&plants(&here, &cpu), &plants(&there, &state))?;
+            let snapshot = measure::snapshot(&there, &state);
+            ensure(snapshot.not_finite == 0, || {
+                format!(
+                    "tick {}: {} plants not finite",
+                    here.ticks, snapshot.not_finite
+                )
+            })?;
+        }
+    }
+    ensure(there.tiles.is_empty(), || {
+        format!("{} tiles still active", there.tiles.len())
+    })?;
+    for (name, ms) in gpu.timer.medians_ms() {
+        println!("{name}: {ms:.3} ms per tick");
+    }
+    println!(
+        "{:?}, most rounds {}",
+        gpu.dispatches,
+        gpu.read_counts()?.rounds_peak
+    );
+    tracks.check()
+}
+
+pub fn a_rolled_track_agrees_with_cubes(device: &Device) -> Result<(), Failed> {
+    compare_tracks(device, Collider::Cube)
+}
+
+pub fn a_rolled_track_agrees_with_closed_forms(device: &Device) -> Result<(), Failed> {
+    compare_tracks(device, Collider::Analytic)
+}
+
+pub fn a_still_meadow_dispatches_nothing(device: &Device) -> Result<(), Failed> {
+    let mut meadow = still()?;
+    let mut gpu = GpuGrass::new(&device.gpu, &device.kernels, &mut meadow)?;
+    for _ in 0..30 {
+        sward::gpu::tick(&mut meadow, &mut gpu)?;
+        gpu.recover()?;
+    }
+    ensure(gpu.dispatches == Dispatches::default(), || {
+        format!("{:?}", gpu.dispatches)
+    })?;
+    ensure(meadow.state_bytes() == 0, || {
+        format!("{} bytes of state", meadow.state_bytes())
+    })
+}
+
+/// Tiles beyond the slabs are refused and counted; those that have one go on as if alone.
+pub fn a_full_device_refuses_and_counts(device: &Device) -> Result<(), Failed> {
+    let mut meadow = rolling_ball(Collider::Analytic)?;
+    let mut gpu = GpuGrass::new(&device.gpu, &device.kernels, &mut meadow)?;
+    meadow.tiles.slabs.lower_limit(5);
+    for _ in 0..120 {
+        sward::gpu::tick(&mut meadow, &mut gpu)?;
+    }
+    let refused = meadow.counters.refused_tiles;
+    ensure(refused > 0 && meadow.tiles.len() == 5, || {
+        format!("{refused} refused, {} active", meadow.tiles.len())
+    })?;
+    let state = gpu.read_state(&meadow)?;
+    let snapshot = measure::snapshot(&meadow, &state);
+    let slabs = meadow
+        .work
+        .tiles
+        .iter()
+        .filter_map(|tile| state.slab(tile.slab));
+    let pushed = slabs
+        .flat_map(|slab| &slab.touched_at)
+        .filter(|&&at| at > 0)
+        .count();
+    ensure(snapshot.not_finite == 0 && pushed > 0, || {
+        format!("{} not finite, {pushed} pushed", snapshot.not_finite)
+    })
+}

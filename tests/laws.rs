@@ -1,0 +1,215 @@
+//! Laws of the cpu engine, on whole scenes: what must hold whatever the scene looks like.
+
+#![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
+
+use std::collections::BTreeMap;
+
+use sward::base::{Real, Vec3};
+use sward::run::Timeline;
+use sward::scene::{LoadedScene, parse_scene};
+use sward::sim::measure::{self, Standing};
+use sward::sim::{Grass, Meadow, tick};
+
+/// A ball rolls over four tiles' common corner while a box falls beside it.
+const ROLL: &str = r#"(
+    duration_s: 2.0,
+    terrain: (ground: Rolling(size_m: (8, 6), amplitude_m: 0.1, wavelength_m: 7.0)),
+    wind: (strength: 0.1, gust: 0.1),
+    bodies: [
+        (name: "ball", shape: Ball(radius_m: 0.15), position_m: (-1.5, 0.16, 0.0),
+         above_ground: true, motion: Thrown(velocity_m_per_s: (2.0, 0.0, 0.0))),
+        (name: "box", shape: Box(size_m: (0.5, 0.3, 0.4)), position_m: (1.2, 0.7, 0.9),
+         above_ground: true),
+    ],
+)"#;
+
+fn scene(text: &str) -> LoadedScene {
+    parse_scene("law", text, &[]).expect("a valid scene")
+}
+
+fn meadow(loaded: &LoadedScene) -> Meadow {
+    Meadow::new(loaded.scene.clone(), &loaded.assets).expect("a meadow")
+}
+
+fn run<R: Real>(loaded: &LoadedScene, ticks: u32) -> (Meadow, Grass<R>) {
+    let mut meadow = meadow(loaded);
+    let mut grass = Grass::new();
+    for _ in 0..ticks {
+        tick(&mut meadow, &mut grass).expect("a tick");
+    }
+    (meadow, grass)
+}
+
+fn hash_after(loaded: &LoadedScene, ticks: u32) -> u64 {
+    let (meadow, grass) = run::<f32>(loaded, ticks);
+    assert!(!meadow.tiles.is_empty(), "an empty state proves nothing");
+    measure::state_hash(&meadow, &grass)
+}
+
+/// Every touched plant by the bits of its root.
+fn touched<R: Real>(meadow: &Meadow, grass: &Grass<R>) -> BTreeMap<[u64; 2], Standing<R>> {
+    let tiles = meadow.work.tiles.iter();
+    tiles
+        .filter_map(|tile| Some(measure::standing(meadow, tile, grass.slab(tile.slab)?)))
+        .flatten()
+        .filter(|plant| plant.touched_at > 0)
+        .map(|plant| (plant.root_in_world().map(f64::to_bits), plant))
+        .collect()
+}
+
+#[test]
+fn every_frame_rate_leaves_the_same_bits() {
+    let loaded = scene(ROLL);
+    let at_rate = |hz: f64| {
+        let (mut meadow, mut grass) = (meadow(&loaded), Grass::<f32>::new());
+        let mut timeline = Timeline::unlimited(loaded.scene.solver.substep_s);
+        for _ in 0..(1.2 * hz) as u32 {
+            for _ in 0..timeline.advance(1.0 / hz) {
+                tick(&mut meadow, &mut grass).expect("a tick");
+            }
+        }
+        measure::state_hash(&meadow, &grass)
+    };
+    let at_60 = at_rate(60.0);
+    for hz in [15.0, 30.0, 120.0, 1000.0] {
+        assert_eq!(at_rate(hz), at_60, "{hz} Hz");
+    }
+}
+
+#[test]
+fn tile_size_changes_no_plant() {
+    let with_tile = |tile_m: f32| {
+        let mut loaded = scene(ROLL);
+        loaded.scene.solver.tile_m = tile_m;
+        let (meadow, grass) = run::<f32>(&loaded, 130);
+        touched(&meadow, &grass)
+    };
+    let whole = with_tile(1.0);
+    assert!(whole.len() > 200, "{} plants", whole.len());
+    for tile_m in [0.5, 2.0] {
+        let sharded = with_tile(tile_m);
+        assert!(
+            sharded.keys().eq(whole.keys()),
+            "{tile_m} m: other plants touched"
+        );
+        for (root, plant) in &sharded {
+            assert_eq!(plant.nodes, whole[root].nodes, "{tile_m} m, {root:?}");
+        }
+    }
+}
+
+#[test]
+fn order_of_bodies_and_number_of_threads_change_nothing() {
+    let loaded = scene(ROLL);
+    let whole = hash_after(&loaded, 130);
+    let mut reversed = scene(ROLL);
+    reversed.scene.bodies.reverse();
+    assert_eq!(hash_after(&reversed, 130), whole, "bodies reversed");
+    for threads in [1, 2, 3, 7] {
+        let pool = rayon_pool(threads);
+        let hash = pool.install(|| hash_after(&loaded, 130));
+        assert_eq!(hash, whole, "{threads} threads");
+    }
+}
+
+fn rayon_pool(threads: usize) -> rayon::ThreadPool {
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    builder.build().expect("a pool of threads")
+}
+
+#[test]
+fn a_removed_body_leaves_nothing_after_the_recovery() {
+    let mut loaded = scene(ROLL);
+    loaded.scene.solver.recovery_s = 0.5;
+    let (mut meadow, mut grass) = run::<f32>(&loaded, 100);
+    for name in ["ball", "box"] {
+        let action = sward::scene::Action::Remove { body: name.into() };
+        meadow.act(&action).expect("the body is there");
+    }
+    assert!(meadow.state_bytes() > 0);
+    for _ in 0..60 {
+        tick(&mut meadow, &mut grass).expect("a tick");
+    }
+    for plant in touched(&meadow, &grass).values() {
+        assert_eq!(plant.nodes, plant.wind, "the wind pose, bit for bit");
+    }
+    for _ in 0..2 {
+        tick(&mut meadow, &mut grass).expect("a tick");
+    }
+    assert_eq!((meadow.tiles.len(), meadow.state_bytes()), (0, 0));
+    assert!(
+        (0..64).all(|slab| grass.slab(slab).is_none()),
+        "slabs are given back"
+    );
+}
+
+#[test]
+fn a_teleport_touches_nothing_on_its_way() {
+    let text = r#"(
+        terrain: (ground: Flat(size_m: (60, 6))),
+        wind: (strength: 0.0, gust: 0.0, flutter: 0.0),
+        bodies: [(name: "ball", shape: Ball(radius_m: 0.15), position_m: (-25.0, 0.15, 0.0))],
+        script: [(at_s: 0.5, action: Teleport(body: "ball", position_m: (25.0, 0.15, 0.0)))],
+    )"#;
+    let (meadow, grass) = run::<f32>(&scene(text), 90);
+    let touched = touched(&meadow, &grass);
+    let places: Vec<f64> = touched.values().map(|p| p.root_in_world()[0]).collect();
+    assert!(places.iter().any(|x| *x < -24.0) && places.iter().any(|x| *x > 24.0));
+    assert!(places.iter().all(|x| x.abs() > 24.0), "{places:?}");
+}
+
+#[test]
+fn nothing_is_left_inside_and_nothing_is_stretched() {
+    for collider in ["cube", "analytic"] {
+        let loaded = scene(&ROLL.replace("(name:", &format!("(collider: {collider}, name:")));
+        let (mut meadow, mut grass) = (meadow(&loaded), Grass::<f32>::new());
+        for _ in 0..150 {
+            tick(&mut meadow, &mut grass).expect("a tick");
+            let now = measure::snapshot(&meadow, &grass);
+            let worst = now.worst;
+            assert!(worst.depth_m <= worst.limit_m, "{collider}: {worst:?}");
+            assert!(now.max_strain <= 0.02, "{collider}: {}", now.max_strain);
+            assert_eq!(now.not_finite, 0);
+        }
+    }
+}
+
+/// The kernels in f32 and f64 on the same bodies: what single precision costs.
+#[test]
+fn single_precision_stays_within_a_tenth_of_a_millimetre() {
+    let loaded = scene(ROLL);
+    let (m32, g32) = run::<f32>(&loaded, 130);
+    let (m64, g64) = run::<f64>(&loaded, 130);
+    let (single, double) = (touched(&m32, &g32), touched(&m64, &g64));
+    let far = |a: Vec3<f32>, b: Vec3<f64>| (Vec3::<f64>::of(a.to_f64()) - b).length();
+    let mut squares = 0.0;
+    let mut nodes = 0;
+    let mut flipped = 0;
+    for (root, plant) in &double {
+        let Some(other) = single.get(root) else {
+            flipped += 1;
+            continue;
+        };
+        let pairs = other.nodes.iter().zip(&plant.nodes);
+        let distances: Vec<f64> = pairs.map(|(&a, &b)| far(a, b)).collect();
+        // A plant that slid to the other side of a body is a discrete event, counted apart.
+        if distances.iter().any(|&d| d > 0.05) {
+            flipped += 1;
+            continue;
+        }
+        squares += distances.iter().map(|d| d * d).sum::<f64>();
+        nodes += distances.len();
+    }
+    let rms = (squares / f64::from(nodes.max(1) as u32)).sqrt();
+    println!(
+        "rms {rms:e} m over {nodes} nodes, {flipped} of {} plants flipped",
+        double.len()
+    );
+    assert!(nodes > 2000);
+    assert!(rms <= 1e-4, "{rms:e} m");
+    assert!(
+        flipped * 100 <= double.len(),
+        "{flipped} of {}",
+        double.len()
+    );
+}
