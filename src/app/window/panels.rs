@@ -75,11 +75,7 @@ pub fn show(ui: &mut egui::Ui, facts: &Facts<'_>, shown: Shown, toasts: &mut Toa
 fn side_panel(ui: &mut egui::Ui, facts: &Facts<'_>, wishes: &mut Vec<Wish>) {
     let play = facts.play;
     ui.horizontal(|ui| {
-        let pause = if play.paused {
-            "▶ go on"
-        } else {
-            "⏸ pause"
-        };
+        let pause = if play.paused { "go on" } else { "pause" };
         for (text, command) in [
             (pause, Command::Pause),
             ("step", Command::Step),
@@ -287,6 +283,7 @@ fn area(
 ) {
     egui::Area::new(egui::Id::unique(name))
         .anchor(align, offset)
+        .default_size(ui.ctx().content_rect().size())
         .show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style())
                 .fill(Color32::from_black_alpha(205))

@@ -24,11 +24,18 @@ use super::ui::{Painting, Ui};
 use super::{keys, screenshot};
 use crate::app::Failure;
 use crate::gpu::Gpu;
-use crate::render::View;
+use crate::render::{BladeDetail, View};
 use crate::run::StageError;
 
 /// Sides of the scene's picture over those of the window, where the processor draws.
 const SOFTWARE_SCALE: f64 = 0.5;
+/// Blades where the processor draws: about a third of what it draws for a single picture, since
+/// a camera that follows the hand matters more than a dense meadow.
+const SOFTWARE_DETAIL: BladeDetail = BladeDetail {
+    full_m: 2.5,
+    reach_m: 40.0,
+    tuft: 2,
+};
 /// Weight of the newest frame in the smoothed time of a frame.
 const FRAME_WEIGHT: f64 = 0.1;
 /// How soon a frame that the surface refused is tried again.
@@ -98,8 +105,11 @@ impl Session {
             1.0
         };
         let size = surface.size().unwrap_or(options.size);
-        let canvas = Canvas::new(&gpu, size, scale).map_err(StageError::from)?;
-        let play = Play::new(&gpu, scenes, options.engine, canvas.scene_size())?;
+        let canvas = Canvas::new(&gpu, size, scale)?;
+        let mut play = Play::new(&gpu, scenes, options.engine, canvas.scene_size())?;
+        if gpu.adapter.is_software {
+            play.stage.detail = SOFTWARE_DETAIL;
+        }
         let mut session = Self {
             ui: Ui::new(&gpu, &window),
             surface,
@@ -292,7 +302,7 @@ impl Session {
     }
 
     fn save_picture(&mut self) {
-        let picture = self.canvas.read(&self.gpu).map_err(StageError::from);
+        let picture = self.canvas.read(&self.gpu);
         let saved = picture
             .map_err(Failure::from)
             .and_then(|picture| screenshot::save(&picture, &self.play.stage, &self.gpu, &self.out));
