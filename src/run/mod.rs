@@ -1,6 +1,7 @@
 //! Running scenes: the clock, what is measured, what is judged, reports and benches.
 
 pub mod bench;
+mod check;
 pub mod engine;
 mod exit;
 mod jitter;
@@ -17,6 +18,7 @@ pub mod timeline;
 pub mod trace;
 pub mod watch;
 
+pub use check::{CheckError, check_loaded, check_scene};
 pub use engine::{Engine, EngineChoice, GpuEngine};
 pub use exit::Exit;
 pub use judge::Verdict;
