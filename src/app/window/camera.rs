@@ -3,8 +3,8 @@
 use crate::base::Vec3;
 use crate::render::View;
 
-/// Radians that a drag of one point turns the camera.
-const TURN_RAD_PER_POINT: f64 = 0.005;
+/// Radians that a drag of one pixel turns the camera.
+const TURN_RAD_PER_PIXEL: f64 = 0.005;
 /// Highest elevation; straight up and down have no right-hand side.
 const MOST_PITCH_RAD: f64 = 1.54;
 /// Factor on speed or distance per notch of the wheel.
@@ -76,25 +76,25 @@ impl CameraRig {
         self.distance_m = distance_m.clamp(DISTANCES_M[0], DISTANCES_M[1]);
     }
 
-    /// Turns about the eye by a drag in points.
+    /// Turns about the eye by a drag in pixels.
     pub fn look(&mut self, [across, down]: [f64; 2]) {
         self.turn(across, -down);
     }
 
-    /// Turns about the pivot, so that the scene follows a drag in points.
+    /// Turns about the pivot, so that the scene follows a drag in pixels.
     pub fn orbit(&mut self, [across, down]: [f64; 2]) {
         let pivot = self.pivot_in_world();
         self.turn(across, -down);
         self.eye_in_world = pivot - self.view().forward * self.distance_m;
     }
 
-    /// Moves eye and pivot sideways, so that the pivot follows a drag in points over a picture
-    /// `rows` points high.
+    /// Moves eye and pivot sideways, so that the pivot follows a drag in pixels over a picture
+    /// `rows` pixels high.
     pub fn pan(&mut self, [across, down]: [f64; 2], rows: f64) {
         let view = self.view();
-        let m_per_point = f64::from(view.pixel_rad(rows.max(1.0) as u32)) * self.distance_m;
-        self.eye_in_world += view.right() * (-across * m_per_point);
-        self.eye_in_world += view.up() * (down * m_per_point);
+        let m_per_pixel = f64::from(view.pixel_rad(rows.max(1.0) as u32)) * self.distance_m;
+        self.eye_in_world += view.right() * (-across * m_per_pixel);
+        self.eye_in_world += view.up() * (down * m_per_pixel);
     }
 
     /// Comes nearer to the pivot by notches of the wheel.
@@ -139,8 +139,8 @@ impl CameraRig {
     }
 
     fn turn(&mut self, right: f64, up: f64) {
-        self.yaw_rad += right * TURN_RAD_PER_POINT;
-        let pitch = self.pitch_rad + up * TURN_RAD_PER_POINT;
+        self.yaw_rad += right * TURN_RAD_PER_PIXEL;
+        let pitch = self.pitch_rad + up * TURN_RAD_PER_PIXEL;
         self.pitch_rad = pitch.clamp(-MOST_PITCH_RAD, MOST_PITCH_RAD);
     }
 }
