@@ -51,13 +51,13 @@ struct DrawnTile {
 
 struct BladePoint {
     @builtin(position) clip: vec4f,
-    // At the middle of the covered samples: outside a blade, colours run to any value.
+    // At the middle of the covered samples: outside the blade colours would run on.
     @location(0) @interpolate(perspective, centroid) radiance: vec3f,
     @location(1) @interpolate(perspective, centroid) opacity: f32,
 }
 
 // Half the least width of a drawn blade, in pixels.
-const LEAST_HALF_PX = 0.42;
+const LEAST_HALF_PX = 0.46;
 
 fn shade_byte(plant: Plant, index: u32) -> f32 {
     return f32((plant.shade >> (8u * index)) & 0xffu) * (1.0 / 255.0);
@@ -69,15 +69,25 @@ fn taper(along: f32) -> f32 {
         * (1.0 - 0.35 * along);
 }
 
-fn pose_node(tile: TileRecord, plant: Plant, place: u32, node: u32) -> PoseNode {
+struct DrawnNode {
+    place: vec3f,
+    direction: vec3f,
+    // How far the node is from where the wind alone would have it, 0 to 1.
+    pressed: f32,
+}
+
+fn drawn_node(tile: TileRecord, plant: Plant, place: u32, node: u32) -> DrawnNode {
+    let free = wind_pose_at(plant, wind_bend(tile, plant), node);
     if tile.slab == NO_SLAB {
-        return wind_pose_at(plant, wind_bend(tile, plant), node);
+        return DrawnNode(free.place, free.direction, 0.0);
     }
     let root = plant_row(tile.slab, place);
     // The segment above, or the last one at the tip.
     let upper = min(node + 1u, field.segments);
     let along = active_nodes[root + upper].xyz - active_nodes[root + upper - 1u].xyz;
-    return PoseNode(active_nodes[root + node].xyz, unit_or(along, UP));
+    let here = active_nodes[root + node].xyz;
+    let moved = distance(here, free.place) / max(plant.height_m, 1e-6);
+    return DrawnNode(here, unit_or(along, UP), smoothstep(0.04, 0.35, moved));
 }
 
 // A blade of a plant's tuft: 0 is the simulated one, the others stand by it.
@@ -155,7 +165,7 @@ fn blade_vertex(
 
     let step = corner / 2u;
     let node = min(step * band.stride, field.segments);
-    let pose = pose_node(drawn.tile, plant, place, node);
+    let pose = drawn_node(drawn.tile, plant, place, node);
     let along = f32(node) * field.segment_share;
     let reached = turned_level(pose.place - plant.root, blade.turn);
     let centre = root_from_eye + reached * (grown * blade.size);
@@ -181,21 +191,28 @@ fn blade_vertex(
     let seen_half_px = 0.7 * half_m * max(seen_share, 0.05) / pixel_m;
     let widened = max(LEAST_HALF_PX / seen_half_px, 1.0);
     let side = select(select(-1.0, 1.0, (corner & 1u) == 1u), 0.0, step == band.steps);
-    let seen_across = seen / max(seen_share, 0.05);
+    let seen_across = unit_or(seen, unit_or(cross(direction, sight), across));
     let spread = mix(across, seen_across, saturate(widened - 1.0));
     let edge = spread * (side * half_m * widened * taper(along) * sqrt(grown));
     let position = centre + edge;
 
-    // A blade is bent across, along its midrib.
-    let bent_normal = normalize(normal + across * (0.45 * side));
-    let rgb = plant_rgb(drawn.tile, plant);
-    // How deep in the grass, by height above the ground: a pressed blade lies in its neighbours'
-    // shade. A part by place along the blade keeps the roots dark under grass that lies flat.
+    // A blade is bent across, along its midrib. Not where it is thin: samples beside its edges
+    // would continue the change across to any value.
+    let bent_normal = normalize(normal + across * (0.45 * side * saturate(0.5 * seen_half_px - 0.5)));
+    // A blade that is turned over shows its underside, which is paler and duller.
+    let upper_rgb = plant_rgb(drawn.tile, plant);
+    let pale_rgb = mix(upper_rgb, vec3f(dot(upper_rgb, vec3f(0.3, 0.6, 0.1))), 0.2) * 1.25;
+    let rgb = mix(upper_rgb, pale_rgb, 0.6 * pose.pressed);
+    // How deep in the grass, by height above the ground. Where grass is pressed its neighbours
+    // are too, and shade it less.
     let height = saturate(reached.y * blade.size / (0.75 * field.reach_m));
-    let top = mix(along, height, 0.85);
+    let top = max(mix(along, height, 0.85), 0.7 * pose.pressed);
     let radiance = blade_radiance(rgb, bent_normal, along, 1.0 - top, position);
     let clip = frame.clip_from_eye * vec4f(position, 1.0);
-    return BladePoint(clip, through_air(radiance, position), 1.0 / widened);
+    // Coverage has few steps; a lot per blade makes up for what lies between. Up to a third too
+    // much cover is left, since a line of half its samples breaks up into dots.
+    let lot = (shade_byte(plant, 0u) - 0.5) / f32(blade_look.samples);
+    return BladePoint(clip, through_air(radiance, position), 1.33 / widened + lot);
 }
 
 // Eq. 13: light that comes through the blade, a slab of unit thickness.
@@ -239,10 +256,9 @@ fn blade_radiance(
 
 @fragment
 fn blade_fragment(in: BladePoint) -> @location(0) vec4f {
-    let lot = lattice(vec2i(in.clip.xy));
-    if blade_look.samples == 1u && in.opacity < lot {
+    // Without multisampling coverage is drawn by lot, pixel by pixel.
+    if blade_look.samples == 1u && in.opacity < lattice(vec2i(in.clip.xy)) {
         discard;
     }
-    // Coverage has four steps; a lot per pixel makes up for what lies between.
-    return vec4f(in.radiance, saturate(in.opacity + (lot - 0.5) * 0.25));
+    return vec4f(in.radiance, saturate(in.opacity));
 }

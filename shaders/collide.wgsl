@@ -4,6 +4,7 @@
 // walking up the plant, so none are stored; a plant counts as touched if any node is inside any part
 // in any sweep, whatever the order.
 #import "shared/contact.wgsl"
+#import "shared/ground.wgsl"
 #import "shared/plant.wgsl"
 #import "shared/recovering.wgsl"
 #import "shared/state.wgsl"
@@ -29,6 +30,21 @@ fn node_touched(tile: TileRecord, plant: Plant, node: vec3f, sweeps: u32) -> boo
     return false;
 }
 
+// True where a part that reaches the plant still holds a node that was pushed before.
+fn node_held(tile: TileRecord, plant: Plant, node: vec3f) -> bool {
+    for (var contact = tile.first_contact; contact < tile.end_contact; contact++) {
+        if reaches(contact, plant.root, plant.height_m) && nearly_holds(contact, node) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// True where a node lies on the ground, so that pushing would only shuffle it.
+fn is_pinned(tile: TileRecord, node: vec3f) -> bool {
+    return node.y - ground_in_anchor(tile, node.x, node.z) <= PINNED_M;
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn collide(
     @builtin(workgroup_id) group: vec3u,
@@ -48,12 +64,19 @@ fn collide(
         return;
     }
     let row = plant_row(tile.slab, place);
-    var walk = walk_from_root(tile, plant, state[row].x);
+    var walk = walk_before(tile, plant, state[row].x);
+    var held = false;
     for (var j = 0u; j < field.segments; j++) {
         walk_up(&walk, plant, j, bitcast<vec3f>(state[row + 1u + j].xyz));
-        if node_touched(tile, plant, walk.node, sweeps) {
+        let free = !walk.before || !is_pinned(tile, walk.node);
+        if free && node_touched(tile, plant, walk.node, sweeps) {
             add_touched(Touched(group.y, place, sweeps));
             return;
         }
+        held = held || (walk.before && node_held(tile, plant, walk.node));
+    }
+    // Held where it was pushed before: it keeps its pose and does not recover yet.
+    if held {
+        add_touched(Touched(group.y, place, 0u));
     }
 }

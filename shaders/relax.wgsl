@@ -115,11 +115,13 @@ fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, layi
     return pushed;
 }
 
-fn bend_springs() {
+// `rate` is κΔt.
+fn bend_springs(rate: f32) {
+    let twice_a = 2.0 * rate / (1.0 + 2.0 * rate);
     for (var j = 0u; j + 1u < field.segments; j++) {
         let rest = length(wind_nodes[j + 2u] - wind_nodes[j]);
         let across = nodes[j + 2u] - nodes[j];
-        let correction = unit_or(across, UP) * (tick.bend * (length(across) - rest));
+        let correction = unit_or(across, UP) * (twice_a * (length(across) - rest));
         // The root is pinned: it has no responsibility, its partner has all of it.
         let lower = select(0.5, 0.0, j == 0u);
         nodes[j] += correction * lower;
@@ -165,7 +167,6 @@ fn respond(tile: TileRecord, reach: f32, sweeps: u32, length: f32) -> u32 {
         // Round 0 is the first push, which decides whether any round follows.
         for (var round = 0u; round <= tick.most_rounds; round++) {
             if round > 0u {
-                bend_springs();
                 follow_pushed(pushed, length);
             }
             pushed = meet_bodies(tile, reach, length, share, round > 0u);
@@ -173,6 +174,7 @@ fn respond(tile: TileRecord, reach: f32, sweeps: u32, length: f32) -> u32 {
                 if pushed == 0u {
                     break;
                 }
+                bend_springs(tick.bend / f32(sweeps));
                 continue;
             }
             keep_above_ground(tile);
@@ -199,7 +201,7 @@ fn relax(
     let tile = tiles[entry.tile];
     let plant = plant_at(tile, entry.place);
     let row = plant_row(tile.slab, entry.place);
-    var walk = walk_from_root(tile, plant, state[row].x);
+    var walk = walk_before(tile, plant, state[row].x);
     nodes[0] = walk.node;
     wind_nodes[0] = walk.wind;
     for (var j = 0u; j < field.segments; j++) {

@@ -143,7 +143,7 @@ fn land_vertex(@builtin(vertex_index) vertex: u32) -> GroundPoint {
 }
 
 // Share of the light that reaches the tops of the grass past other tops.
-const GRASS_TOP_OPEN = 0.62;
+const GRASS_TOP_OPEN = 0.54;
 
 struct Surface {
     albedo: vec3f,
@@ -166,14 +166,13 @@ fn floor_of_grass(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
         * value_noise(fibre_place.yx * vec2f(17.0, 150.0) + 40.0);
     let thatch = smoothstep(0.22, 0.5, fibres) * detail_weight(0.02, pixel_m);
 
-    let earth = ground.soil_rgb * (0.55 + 0.9 * lumps) * (0.75 + 0.5 * grains);
-    let moss = mix(base, ground.soil_rgb, 0.25) * (0.35 + 0.8 * lumps) * (0.75 + 0.5 * grains);
+    let earth = ground.soil_rgb * (0.55 + 0.9 * lumps) * (0.85 + 0.3 * grains);
+    let moss = mix(base, ground.soil_rgb, 0.25) * (0.25 + 0.9 * lumps) * (0.85 + 0.3 * grains);
     let leaves = mix(base * 1.1, vec3f(0.30, 0.24, 0.11), 0.55) * (0.6 + 0.6 * lumps);
     let green = smoothstep(0.25, 0.75, patches + 0.7 * (lumps - 0.5) + 0.35 * ground.cover);
     var albedo = mix(earth, moss, green);
     albedo = mix(albedo, leaves, thatch * mix(0.35, 0.6, ground.cover));
-    let relief = 0.012 * lumps + 0.0018 * grains + 0.003 * thatch;
-    return Surface(albedo, relief, 1.0 - 0.78 * ground.cover);
+    return Surface(albedo, 0.010 * lumps, 1.0 - 0.88 * ground.cover);
 }
 
 // The field where single blades are too small to draw: tops of clumps, with dark between them.
@@ -188,7 +187,10 @@ fn top_of_grass(place: vec2f, base: vec3f, pixel_m: f32, long_pixel_m: f32) -> S
     let dry = vec3f(1.2, 1.04, 0.85);
     let lush = vec3f(0.88, 0.97, 0.95);
     let tint = mix(lush, dry, saturate(0.55 * swathes + 0.45 * fields));
-    return Surface(base * tint * light, 0.05 * clumps + 0.02 * tufts, GRASS_TOP_OPEN);
+    let rgb = base * tint * light;
+    // As many dry blades as among the drawn ones.
+    let straw = dot(rgb, vec3f(0.3, 0.6, 0.1)) * vec3f(1.55, 1.2, 0.5);
+    return Surface(mix(rgb, straw, 0.2), 0.05 * clumps + 0.02 * tufts, GRASS_TOP_OPEN);
 }
 
 // Bends a normal by a small height that varies over the screen (Mikkelsen 2010).
@@ -213,7 +215,7 @@ fn ground_fragment(in: GroundPoint) -> @location(0) vec4f {
     let uv = in.place_in_field / ground.map_m;
     let map_rgb = textureSampleLevel(base_colour, base_sampler, uv, 0.0).rgb;
     // Mirror images of the field would show from a hill: the land turns to its mean colour.
-    let base = mix(map_rgb, ground.mean_rgb, smoothstep(10.0, 90.0, in.beyond_m));
+    let base = mix(map_rgb, ground.mean_rgb, smoothstep(5.0, 50.0, in.beyond_m));
 
     let near = floor_of_grass(in.place_in_field, base, pixel_m);
     let far = top_of_grass(in.place_in_field, base, pixel_m, long_pixel_m);

@@ -18,7 +18,9 @@ struct ContactRecord {
     key: u32,
     // 1: tested with the depth cube.
     uses_cube: u32,
-    spare: vec2u,
+    // A vertex that was pushed before is held while it is no farther off.
+    hold_m: f32,
+    spare: u32,
     solid: SolidRecord,
 }
 
@@ -71,6 +73,14 @@ fn holds(contact: u32, pose: Pose, vertex: vec3f) -> bool {
         return cube_inside(contacts[contact].solid, p);
     }
     return solid_depth(contacts[contact].solid, p) > 0.0;
+}
+
+// True where a vertex is inside the part at the end of the sub-step, or so close to it that a plant
+// the body pushed before is still held.
+fn nearly_holds(contact: u32, vertex: vec3f) -> bool {
+    let pose = Pose(contacts[contact].to_turn, contacts[contact].to_place);
+    let depth = solid_depth(contacts[contact].solid, inverse_point(pose, vertex));
+    return depth > -contacts[contact].hold_m;
 }
 
 // The way out of the part at a pose for a vertex with a memory of its last face. `reach` is the

@@ -15,8 +15,12 @@ struct Walk {
     length: f32,
     // The share t³ of the offset that is left; 0 for the wind pose itself.
     left: f32,
-    // True in the very tick of a contact, which leaves the pose as it is.
-    fresh: bool,
+    // True where the pose is the one that the last contact left, without lengths restored.
+    as_left: bool,
+    // True where that was by the wind of the sub-step before; then what it bends to.
+    before: bool,
+    bend_before: vec2f,
+    wind_before: vec3f,
     // The node reached, and the same node of the wind pose.
     node: vec3f,
     wind: vec3f,
@@ -28,7 +32,7 @@ fn offset_left(age: u32) -> f32 {
     return t * t * t;
 }
 
-// At the root of a plant touched at a tick (0: never).
+// At the root of a plant touched at a tick (0: never), as it is now.
 fn walk_from_root(tile: TileRecord, plant: Plant, touched_at: u32) -> Walk {
     var walk: Walk;
     walk.blade = blade_place(plant);
@@ -36,25 +40,48 @@ fn walk_from_root(tile: TileRecord, plant: Plant, touched_at: u32) -> Walk {
     walk.length = segment_length(plant);
     if touched_at != 0u {
         walk.left = offset_left(tick.now - touched_at);
-        walk.fresh = tick.now == touched_at;
+        walk.as_left = tick.now == touched_at;
     }
     walk.node = plant.root;
     walk.wind = plant.root;
     return walk;
 }
 
+// True of a plant that was touched in the sub-step before this one.
+fn was_touched(touched_at: u32) -> bool {
+    return touched_at != 0u && tick.now - touched_at == 1u;
+}
+
+// At the root of a plant as bodies meet it in this sub-step: as it was left if it was touched in the
+// sub-step before, wherever the wind has gone since.
+fn walk_before(tile: TileRecord, plant: Plant, touched_at: u32) -> Walk {
+    var walk = walk_from_root(tile, plant, touched_at);
+    if was_touched(touched_at) {
+        walk.before = true;
+        walk.bend_before = wind_bend_by(tick.wind_before, tile, plant);
+        walk.wind_before = plant.root;
+    }
+    return walk;
+}
+
 // Goes up segment `j`, whose upper node has the given offset.
 fn walk_up(walk: ptr<function, Walk>, plant: Plant, j: u32, offset: vec3f) {
-    let below = (*walk).wind;
+    let blade = (*walk).blade;
     let length = (*walk).length;
-    let above = below + wind_direction(plant, (*walk).blade, (*walk).bend, j) * length;
+    let below = (*walk).wind;
+    let above = below + wind_direction(plant, blade, (*walk).bend, j) * length;
     (*walk).wind = above;
+    if (*walk).before {
+        (*walk).wind_before += wind_direction(plant, blade, (*walk).bend_before, j) * length;
+        (*walk).node = (*walk).wind_before + offset;
+        return;
+    }
     if (*walk).left <= 0.0 {
         (*walk).node = above;
         return;
     }
     let bent = above + offset * (*walk).left;
-    if (*walk).fresh {
+    if (*walk).as_left {
         (*walk).node = bent;
         return;
     }

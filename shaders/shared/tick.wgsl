@@ -1,5 +1,7 @@
 // What one sub-step asks of the passes. Twin: src/gpu/tick_data.rs.
 
+#import "shared/wind.wgsl"
+
 struct TickUniform {
     // Tick at the end of the sub-step.
     now: u32,
@@ -10,9 +12,11 @@ struct TickUniform {
     most_rounds: u32,
     // Δt/T of the recovery.
     step_over_t: f32,
-    // 2a of the bend springs.
+    // κΔt of the bend springs over the whole sub-step.
     bend: f32,
     strain_limit: f32,
+    // The wind at the start of the sub-step.
+    wind_before: WindUniform,
 }
 
 @group(1) @binding(0) var<uniform> tick: TickUniform;

@@ -2,7 +2,8 @@
 // two spare), then two words per plant. Host: src/gpu/grass.rs.
 @group(1) @binding(4) var<storage, read_write> touched: array<atomic<u32>>;
 
-// A plant to respond: rank of its tile's record, place in the tile, sweeps it needs.
+// A plant to respond: rank of its tile's record, place in the tile, sweeps it needs (0 if
+// it is merely held).
 struct Touched {
     tile: u32,
     place: u32,

@@ -28,19 +28,25 @@ struct WindUniform {
 
 @group(0) @binding(3) var<uniform> wind: WindUniform;
 
-// Bend of a plant's tip along x and z.
+// Bend of a plant's tip along x and z by the wind of now.
 fn wind_bend(tile: TileRecord, plant: Plant) -> vec2f {
+    return wind_bend_by(wind, tile, plant);
+}
+
+// Bend of a plant's tip by the wind of some instant.
+fn wind_bend_by(then: WindUniform, tile: TileRecord, plant: Plant) -> vec2f {
+    var waves = then.waves;
     var gust = 0.0;
     for (var n = 0u; n < WAVES; n++) {
-        let phase = wind.waves[n].phase
-            + tile.anchor.x * wind.waves[n].per_anchor.x
-            + tile.anchor.y * wind.waves[n].per_anchor.y;
-        let per_metre = wind.waves[n].per_metre;
+        let phase = waves[n].phase
+            + tile.anchor.x * waves[n].per_anchor.x
+            + tile.anchor.y * waves[n].per_anchor.y;
+        let per_metre = waves[n].per_metre;
         let turns = unit(phase) + (plant.root.x * per_metre.x + plant.root.z * per_metre.y);
-        gust += wind.waves[n].share * sin_turns(turns);
+        gust += waves[n].share * sin_turns(turns);
     }
-    let along = wind.strength + wind.gust * gust;
-    let across = wind.flutter * sin_turns(unit(wind.flutter_phase) + plant.flutter_turns);
-    let d = wind.direction;
+    let along = then.strength + then.gust * gust;
+    let across = then.flutter * sin_turns(unit(then.flutter_phase) + plant.flutter_turns);
+    let d = then.direction;
     return vec2f(d.x * along - d.y * across, d.y * along + d.x * across) * plant.flexibility;
 }

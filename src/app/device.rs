@@ -7,7 +7,7 @@ use crate::gpu::{Gpu, GpuError};
 use crate::run::{Device, EngineChoice};
 
 /// Options that choose the engine.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 pub struct EngineArguments {
     /// What simulates the grass; by default the gpu on a hardware adapter, else the cpu
     #[arg(long, value_enum)]

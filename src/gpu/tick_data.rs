@@ -1,10 +1,11 @@
 //! The work of one sub-step as the shaders see it. Twins: `shaders/shared/tick.wgsl`,
 //! `contact.wgsl`, `solid.wgsl`, and `shaders/depth_cube.wgsl` for parts and jobs.
 
+use super::field_data::WindUniform;
 use crate::base::{Pose, Vec3};
 use crate::gpu_struct;
 use crate::scene::Solver;
-use crate::sim::contact::memory_key;
+use crate::sim::contact::{HOLD_M, memory_key};
 use crate::sim::meadow::Meadow;
 use crate::sim::relax::RelaxSettings;
 use crate::sim::solid::Solid;
@@ -27,6 +28,7 @@ gpu_struct! {
         pub step_over_t: f32,
         pub bend: f32,
         pub strain_limit: f32,
+        pub wind_before: WindUniform,
     }
 }
 
@@ -57,7 +59,8 @@ gpu_struct! {
         pub sweeps: u32,
         pub key: u32,
         pub uses_cube: u32,
-        pub spare: [u32; 2],
+        pub hold_m: f32,
+        pub spare: u32,
         pub solid: SolidRecord,
     }
 }
@@ -97,6 +100,7 @@ impl TickUniform {
             step_over_t: meadow.step_over_t() as f32,
             bend: settings.bend,
             strain_limit: settings.strain_limit,
+            wind_before: (&meadow.work.wind_before).into(),
         }
     }
 }
@@ -143,6 +147,7 @@ impl ContactRecord {
     /// form.
     pub fn new(contact: &Contact, solid: &SolidRecord) -> Self {
         let (from, to): (Pose<f32>, Pose<f32>) = (contact.from.cast(), contact.to.cast());
+        let uses_cube = contact.uses_cube && solid.has_cube();
         Self {
             from_turn: from.turn.to_array(),
             to_turn: to.turn.to_array(),
@@ -151,9 +156,24 @@ impl ContactRecord {
             to_place: to.place.to_f32(),
             sweeps: contact.sweeps,
             key: memory_key(contact),
-            uses_cube: u32::from(contact.uses_cube && solid.has_cube()),
-            spare: [0; 2],
+            uses_cube: u32::from(uses_cube),
+            hold_m: hold_m(solid, uses_cube),
+            spare: 0,
             solid: *solid,
         }
     }
+}
+
+/// How far off a part still holds a plant it pushed before, in metres; see
+/// [`sim::contact::hold_m`](crate::sim::contact::hold_m).
+fn hold_m(solid: &SolidRecord, uses_cube: bool) -> f32 {
+    let size = [0, 1, 2].map(|a| solid.high[a] - solid.low[a]);
+    let longest = size[0].max(size[1]).max(size[2]);
+    let texel_m = longest / solid.resolution.max(1) as f32;
+    let half_texel_m = if uses_cube {
+        0.5 * f64::from(texel_m)
+    } else {
+        0.0
+    };
+    (HOLD_M + half_texel_m) as f32
 }

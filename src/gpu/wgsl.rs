@@ -16,6 +16,7 @@ use crate::field::grid::ANCHOR_CELLS;
 use crate::field::plant::MAX_SPECIES;
 use crate::field::pose::{MAX_NODES, MAX_SEGMENTS};
 use crate::field::wind::WAVES;
+use crate::sim::collide::PINNED_M;
 use crate::sim::contact::FACE_MASK;
 use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIDDEN_M, HIT};
 use crate::sim::solid::{KEEP_FACE, NO_FACE, OUT_OF_REACH_M};
@@ -148,7 +149,7 @@ pub const SHARED: &[WgslFile] = &[
 
 /// One file per compute pass.
 pub const PASSES: &[WgslFile] = &[
-    wgsl_file!("collide.wgsl", WORKGROUP),
+    wgsl_file!("collide.wgsl", PINNED_M, WORKGROUP),
     wgsl_file!("depth_cube.wgsl", WORKGROUP),
     wgsl_file!("recover.wgsl", WORKGROUP),
     wgsl_file!(

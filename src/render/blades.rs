@@ -134,6 +134,9 @@ const BAND_RATIO: f64 = std::f64::consts::SQRT_2;
 pub(super) const TUFT_RADIUS_M: f32 = 0.045;
 /// Range of a companion's turn about its plant's root, in turns.
 pub(super) const TUFT_TURNS: f32 = 0.16;
+/// Active tiles are drawn as finely as others at this share of their distance, so that imprints
+/// stay readable.
+const ACTIVE_NEARNESS: f64 = 0.4;
 /// Share of the lost cover that the remaining blades make up for by their width; the ground's
 /// own look supplies the rest.
 const WIDEN_POWER: f64 = 0.75;
@@ -343,6 +346,7 @@ impl BladesLayer {
 #[derive(Clone, Copy, Debug)]
 struct Sight {
     tile: TileId,
+    /// From the eye; less for an active tile.
     distance_m: f64,
     band: u32,
 }
@@ -368,8 +372,11 @@ fn tiles_in_sight(input: &BladesInput<'_>, view: &View, aspect: f32) -> Vec<Sigh
             let low = [low[0] - tall, heights[0] - 0.5 * tall, low[1] - tall];
             let high = [high[0] + tall, heights[1] + tall, high[1] + tall];
             let nearest = [0, 1, 2].map(|a| eye[a].clamp(low[a], high[a]) - eye[a]);
-            let distance_m = Vec3::<f64>::of(nearest).length();
+            let mut distance_m = Vec3::<f64>::of(nearest).length();
             if distance_m < reach && frustum.may_see(low, high) {
+                if slab_of(input, tile).is_some() {
+                    distance_m *= ACTIVE_NEARNESS;
+                }
                 let band = band_at(input.detail, distance_m);
                 seen.push(Sight {
                     tile,
@@ -425,6 +432,11 @@ fn band_of(input: &BladesInput<'_>, band: u32, first_tile: u32) -> Band {
     }
 }
 
+fn slab_of(input: &BladesInput<'_>, tile: TileId) -> Option<u32> {
+    let found = input.active.binary_search_by_key(&tile, |&(id, _)| id);
+    found.ok().map(|index| input.active[index].1)
+}
+
 fn blades_per_tile(input: &BladesInput<'_>) -> f64 {
     f64::from(input.field.grid.plants_per_tile()) * f64::from(input.detail.tuft.max(1))
 }
@@ -432,11 +444,8 @@ fn blades_per_tile(input: &BladesInput<'_>) -> f64 {
 fn drawn_tile(input: &BladesInput<'_>, view: &View, sight: &Sight) -> DrawnTile {
     let (field, grid) = (input.field, &input.field.grid);
     let mut record = TileRecord::resting(field, sight.tile);
-    if let Ok(found) = input
-        .active
-        .binary_search_by_key(&sight.tile, |&(tile, _)| tile)
-    {
-        record.slab = input.active[found].1;
+    if let Some(slab) = slab_of(input, sight.tile) {
+        record.slab = slab;
     }
     let anchor = grid.anchor_of(sight.tile, &field.ground);
     let origin = Vec3::of(grid.anchor_in_world(&anchor, &field.ground));

@@ -66,14 +66,14 @@ impl Sun {
         let low = (-6.0 * direction.y).exp();
         let towards = |day: f32, evening: f32| bright * (day + (evening - day) * low);
         let zenith_rgb = [
-            towards(0.17, 0.16),
-            towards(0.38, 0.25),
-            towards(0.92, 0.50),
+            towards(0.13, 0.15),
+            towards(0.36, 0.25),
+            towards(1.02, 0.55),
         ];
         let horizon_rgb = [
-            towards(1.05, 1.35),
-            towards(1.24, 0.95),
-            towards(1.46, 0.70),
+            towards(0.86, 1.35),
+            towards(1.14, 0.95),
+            towards(1.55, 0.70),
         ];
         let ground_rgb = [0.09, 0.12, 0.05];
         let bounce_rgb = [0, 1, 2].map(|i| {

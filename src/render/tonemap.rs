@@ -22,9 +22,9 @@ pub struct Exposure {
 impl Default for Exposure {
     fn default() -> Self {
         Self {
-            exposure: 0.74,
+            exposure: 0.80,
             contrast: 1.22,
-            saturation: 1.10,
+            saturation: 1.0,
         }
     }
 }

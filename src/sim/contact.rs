@@ -127,7 +127,7 @@ pub fn hold_m(part: &Part, uses_cube: bool) -> f64 {
 }
 
 /// See [`hold_m`].
-const HOLD_M: f64 = 0.001;
+pub const HOLD_M: f64 = 0.001;
 
 /// The body through whose face a vertex was pushed out last, from the vertex's memory; `None` if
 /// none was.

@@ -102,7 +102,7 @@ fn check(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Parses a size such as `1280x720`.
-fn size(text: &str) -> Result<[u32; 2], String> {
+pub fn size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once('x').and_then(|(width, height)| {
         let size: [u32; 2] = [width.parse().ok()?, height.parse().ok()?];
         let fits = |side: &u32| (1..=MOST_PIXELS).contains(side);

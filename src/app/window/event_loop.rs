@@ -67,7 +67,7 @@ impl ApplicationHandler for App<'_> {
             return;
         };
         let outcome = match event {
-            WindowEvent::CloseRequested => {
+            WindowEvent::CloseRequested | WindowEvent::Destroyed => {
                 events.exit();
                 return;
             }

@@ -8,7 +8,7 @@ use super::{Options, complain};
 use crate::app::Failure;
 use crate::gpu::{Gpu, GpuError};
 use crate::render::PictureTarget;
-use crate::run::{Engine, Exit, Stage, StageError};
+use crate::run::{Engine, EngineChoice, Exit, Stage, StageError};
 use crate::scene::LoadedScene;
 use crate::sim::Meadow;
 
@@ -16,7 +16,8 @@ use crate::sim::Meadow;
 /// prints a line.
 ///
 /// # Errors
-/// An invalid scene, a picture that cannot be drawn or written.
+/// An invalid scene, a picture that cannot be drawn or written, no adapter for the gpu engine if
+/// that was asked for.
 pub fn run(
     reason: &str,
     scenes: &SceneList,
@@ -30,7 +31,9 @@ pub fn run(
     ));
     match Gpu::headless() {
         Ok(gpu) => with_picture(&gpu, &loaded, options, out)?,
-        Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoDevice { .. })) => {
+        Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }))
+            if options.engine != EngineChoice::Gpu =>
+        {
             complain(&format!("no picture: {error}"));
             without_picture(&loaded, out)?;
         }
@@ -45,7 +48,7 @@ fn with_picture(
     options: &Options,
     out: &mut impl Write,
 ) -> Result<(), Failure> {
-    let target = PictureTarget::new(gpu, options.size).map_err(StageError::from)?;
+    let target = PictureTarget::new(gpu, options.size)?;
     let mut stage = Stage::new(
         gpu,
         loaded,
@@ -58,9 +61,9 @@ fn with_picture(
     }
     let view = stage.camera(None)?;
     stage.draw(gpu, &view, &target.view, false)?;
-    let picture = target.read(gpu).map_err(StageError::from)?;
+    let picture = target.read(gpu)?;
     let path = options.out.join(format!("sward-{}.png", loaded.name));
-    let png = super::screenshot::encode(&picture, &stage, gpu).map_err(StageError::from)?;
+    let png = super::screenshot::encode(&picture, &stage, gpu)?;
     fs::create_dir_all(&options.out).map_err(|e| Failure::file(&options.out, e))?;
     fs::write(&path, png).map_err(|e| Failure::file(&path, e))?;
     print_line(loaded, stage.meadow(), out)?;

@@ -11,6 +11,10 @@ use crate::render::TileTone;
 
 /// Width of the panel, in points.
 const PANEL_POINTS: f32 = 236.0;
+/// Height of the window that the help leaves free, in points.
+const HELP_MARGIN: f32 = 60.0;
+/// Sample of a colour in the legend, in points.
+const SWATCH: egui::Vec2 = egui::vec2(11.0, 11.0);
 /// Colour of a resting tile in the legend; such tiles get no box.
 const RESTING: Color32 = Color32::from_rgb(150, 160, 150);
 const WARNING: Color32 = Color32::from_rgb(255, 196, 92);
@@ -64,22 +68,18 @@ pub fn show(ui: &mut egui::Ui, facts: &Facts<'_>, shown: Shown, toasts: &mut Toa
     if shown.help {
         help(ui);
     }
-    messages(ui, toasts);
+    messages(ui, shown, toasts);
     wishes
 }
 
 fn side_panel(ui: &mut egui::Ui, facts: &Facts<'_>, wishes: &mut Vec<Wish>) {
     let play = facts.play;
     ui.horizontal(|ui| {
-        let pause = if play.paused {
-            "▶ go on"
-        } else {
-            "⏸ pause"
-        };
+        let pause = if play.paused { "go on" } else { "pause" };
         for (text, command) in [
             (pause, Command::Pause),
-            ("⏭ step", Command::Step),
-            ("⟲ restart", Command::Restart),
+            ("step", Command::Step),
+            ("restart", Command::Restart),
         ] {
             if ui.button(text).clicked() {
                 wishes.push(Wish::Do(command));
@@ -138,11 +138,7 @@ fn measures(ui: &mut egui::Ui, facts: &Facts<'_>) {
                 ui.end_row();
             };
             row("time", format!("{:.2} s", meadow.time_s()));
-            let rate = 1e3 / facts.frame_ms.max(1e-3);
-            row(
-                "frame",
-                format!("{:.1} ms, {rate:.0} per s", facts.frame_ms),
-            );
+            row("frame", frame_time(facts.frame_ms));
             for (pass, ms) in play.pass_ms() {
                 row(&format!("  {pass}"), format!("{ms:.2} ms"));
             }
@@ -229,28 +225,39 @@ fn legend(ui: &egui::Ui, facts: &Facts<'_>) {
                 "recovering",
             ),
         ] {
-            ui.colored_label(colour, format!("■ {count} {state}"));
+            ui.horizontal(|ui| {
+                let (square, _) = ui.allocate_exact_size(SWATCH, egui::Sense::hover());
+                ui.painter().rect_filled(square, 2.0, colour);
+                ui.label(format!("{count} {state}"));
+            });
         }
     });
 }
 
 fn help(ui: &egui::Ui) {
     area(ui, "help", Align2::CENTER_CENTER, [0.0, 0.0], |ui| {
-        egui::ScrollArea::vertical().show(ui, |ui| {
-            egui::Grid::new("keys").spacing([16.0, 2.0]).show(ui, |ui| {
-                let bound = BINDINGS.iter().map(|b| (b.key, b.help));
-                for (key, text) in bound.chain(HELD.iter().copied()) {
-                    ui.strong(key);
-                    ui.label(text);
-                    ui.end_row();
-                }
+        let rows = ui.ctx().content_rect().height() - HELP_MARGIN;
+        egui::ScrollArea::vertical()
+            .max_height(rows)
+            .show(ui, |ui| {
+                egui::Grid::new("keys").spacing([16.0, 2.0]).show(ui, |ui| {
+                    let bound = BINDINGS.iter().map(|b| (b.key, b.help));
+                    for (key, text) in bound.chain(HELD.iter().copied()) {
+                        ui.strong(key);
+                        ui.label(text);
+                        ui.end_row();
+                    }
+                });
             });
-        });
     });
 }
 
-fn messages(ui: &egui::Ui, toasts: &mut Toasts) {
-    let current: Vec<_> = toasts.current().collect();
+/// News belong to the panels; errors are shown in any case.
+fn messages(ui: &egui::Ui, shown: Shown, toasts: &mut Toasts) {
+    let current: Vec<_> = toasts
+        .current()
+        .filter(|toast| shown.panels || toast.is_error)
+        .collect();
     if current.is_empty() {
         return;
     }
@@ -276,11 +283,18 @@ fn area(
 ) {
     egui::Area::new(egui::Id::unique(name))
         .anchor(align, offset)
+        .default_size(ui.ctx().content_rect().size())
         .show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style())
                 .fill(Color32::from_black_alpha(205))
                 .show(ui, contents);
         });
+}
+
+fn frame_time(ms: f64) -> String {
+    let per_s = 1e3 / ms.max(1e-3);
+    let digits = if per_s < 10.0 { 1 } else { 0 };
+    format!("{ms:.0} ms, {per_s:.digits$}/s")
 }
 
 fn bytes(count: u64) -> String {

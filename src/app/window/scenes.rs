@@ -50,7 +50,9 @@ impl SceneList {
         let folder = beside.or_else(|| own.is_dir().then(|| own.to_path_buf()));
         if let Some(folder) = folder {
             for path in scene_files(&folder)? {
-                list.add_file(&path, file == Some(path.as_path()));
+                // The folder is the asked file's own, which may be written in another way.
+                let asked_for = file.filter(|file| file.file_name() == path.file_name());
+                list.add_file(asked_for.unwrap_or(&path), asked_for.is_some());
             }
         }
         let wanted = match (scene, file) {
@@ -89,7 +91,7 @@ impl SceneList {
         (self.current as isize + by).rem_euclid(count) as usize
     }
 
-    /// Adds a file unless the program has the same scene and nobody asked for the file.
+    /// Adds a file, unless the program has the same scene and nobody asked for the file.
     fn add_file(&mut self, path: &Path, asked_for: bool) {
         let entry = SceneEntry::of_file(path, &self.assets);
         let known = |e: &SceneEntry| {

@@ -35,7 +35,7 @@ pub fn save(
     gpu: &Gpu,
     folder: &Path,
 ) -> Result<PathBuf, Failure> {
-    let png = encode(picture, stage, gpu).map_err(crate::run::StageError::from)?;
+    let png = encode(picture, stage, gpu)?;
     fs::create_dir_all(folder).map_err(|e| Failure::file(folder, e))?;
     let name = format!("sward-{}-{}", stage.loaded().name, stage.meadow().ticks);
     let mut path = folder.join(format!("{name}.png"));

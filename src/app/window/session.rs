@@ -24,11 +24,18 @@ use super::ui::{Painting, Ui};
 use super::{keys, screenshot};
 use crate::app::Failure;
 use crate::gpu::Gpu;
-use crate::render::View;
+use crate::render::{BladeDetail, View};
 use crate::run::StageError;
 
 /// Sides of the scene's picture over those of the window, where the processor draws.
 const SOFTWARE_SCALE: f64 = 0.5;
+/// Blades where the processor draws: about a third of what it draws for a single picture, since
+/// a camera that follows the hand matters more than a dense meadow.
+const SOFTWARE_DETAIL: BladeDetail = BladeDetail {
+    full_m: 2.5,
+    reach_m: 40.0,
+    tuft: 2,
+};
 /// Weight of the newest frame in the smoothed time of a frame.
 const FRAME_WEIGHT: f64 = 0.1;
 /// How soon a frame that the surface refused is tried again.
@@ -65,7 +72,8 @@ pub struct Session {
     pub(super) wants_picture: bool,
     out: PathBuf,
     scale: f64,
-    last_frame: Instant,
+    /// When the last frame began; `None` if the window has waited for an event since.
+    last_frame: Option<Instant>,
     frame_ms: f64,
     pub window: Arc<Window>,
 }
@@ -97,8 +105,11 @@ impl Session {
             1.0
         };
         let size = surface.size().unwrap_or(options.size);
-        let canvas = Canvas::new(&gpu, size, scale).map_err(StageError::from)?;
-        let play = Play::new(&gpu, scenes, options.engine, canvas.scene_size())?;
+        let canvas = Canvas::new(&gpu, size, scale)?;
+        let mut play = Play::new(&gpu, scenes, options.engine, canvas.scene_size())?;
+        if gpu.adapter.is_software {
+            play.stage.detail = SOFTWARE_DETAIL;
+        }
         let mut session = Self {
             ui: Ui::new(&gpu, &window),
             surface,
@@ -115,7 +126,7 @@ impl Session {
             wants_picture: false,
             out: options.out.clone(),
             scale,
-            last_frame: Instant::now(),
+            last_frame: None,
             frame_ms: 0.0,
             window,
         };
@@ -223,11 +234,16 @@ impl Session {
         Ok(self.after(acted, repaint_after))
     }
 
-    /// Seconds since the last frame.
+    /// Seconds since the last frame; none after a wait, which is nobody's delay.
     fn clock(&mut self) -> f64 {
         let now = Instant::now();
-        let frame_s = (now - self.last_frame).as_secs_f64();
-        self.last_frame = now;
+        let Some(before) = self.last_frame.replace(now) else {
+            return 0.0;
+        };
+        let frame_s = (now - before).as_secs_f64();
+        if self.frame_ms == 0.0 {
+            self.frame_ms = 1e3 * frame_s;
+        }
         self.frame_ms += FRAME_WEIGHT * (1e3 * frame_s - self.frame_ms);
         frame_s
     }
@@ -286,7 +302,7 @@ impl Session {
     }
 
     fn save_picture(&mut self) {
-        let picture = self.canvas.read(&self.gpu).map_err(StageError::from);
+        let picture = self.canvas.read(&self.gpu);
         let saved = picture
             .map_err(Failure::from)
             .and_then(|picture| screenshot::save(&picture, &self.play.stage, &self.gpu, &self.out));
@@ -301,6 +317,7 @@ impl Session {
         if acted || moves || self.wants_picture || repaint_after.is_zero() {
             return After::Frame;
         }
+        self.last_frame = None;
         let has_toasts = self.toasts.current().next().is_some();
         let wait = if has_toasts {
             repaint_after.min(TOAST_TICK)

@@ -8,6 +8,9 @@ use winit::window::Window;
 use crate::gpu::Gpu;
 use crate::render::PictureTarget;
 
+/// Size of the small text, in points: egui's own 9 is hard to read over a meadow.
+const SMALL_POINTS: f32 = 10.5;
+
 /// egui with its state between frames.
 pub struct Ui {
     context: egui::Context,
@@ -30,6 +33,10 @@ impl Ui {
     pub fn new(gpu: &Gpu, window: &Window) -> Self {
         let context = egui::Context::default();
         context.set_theme(egui::Theme::Dark);
+        context.all_styles_mut(|style| {
+            let small = egui::FontId::proportional(SMALL_POINTS);
+            style.text_styles.insert(egui::TextStyle::Small, small);
+        });
         let winit = egui_winit::State::new(
             context.clone(),
             egui::ViewportId::ROOT,
