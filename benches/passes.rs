@@ -6,16 +6,17 @@
     reason = "a bench that cannot run says why and stops"
 )]
 
-use sward::run::{Engine, RunOptions, run_scene};
+use sward::run::{Device, RunOptions, run_scene};
 use sward::scene::builtin::load_builtin;
-use sward::sim::Grass;
 
 fn main() {
     println!("scene, pass, median_ms, max_penetration_m, max_strain, active_tiles_peak");
     for name in ["ball_roll", "mesh_drop", "million_blades", "hundred_bodies"] {
-        let scene = load_builtin(name).expect("a shipped scene");
-        let engine = Engine::Cpu(Grass::new());
-        let outcome = run_scene(&scene, &RunOptions::default(), engine, |_| {}).expect("a run");
+        let scene = load_builtin(name)
+            .expect("a shipped scene")
+            .expect("a sound scene");
+        let outcome =
+            run_scene(&scene, &RunOptions::default(), &Device::Processor, |_| {}).expect("a run");
         for (pass, ms) in &outcome.pass_ms {
             println!(
                 "{name}, {pass}, {ms:.4}, {:.6}, {:.5}, {}",
