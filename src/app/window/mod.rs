@@ -63,6 +63,6 @@ fn missing_display() -> Option<String> {
     let names = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];
     let is_set = |name: &&str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     let needed = cfg!(all(unix, not(target_os = "macos")));
-    (needed && !names.iter().any(|name| is_set(name)))
+    (needed && !names.iter().any(is_set))
         .then(|| "neither WAYLAND_DISPLAY nor DISPLAY is set".to_owned())
 }
