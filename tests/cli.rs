@@ -166,3 +166,60 @@ fn shipped_scenes_are_known_by_name() {
     // Two seconds at 15 Hz and the head.
     assert_eq!(rows.lines().count(), 31);
 }
+
+#[test]
+fn pictures_and_benches_refuse_nonsense_before_they_start() {
+    for wrong in [
+        &["render", "still", "--at", "-1", "--out", "a.png"][..],
+        &["render", "still", "--at", "NaN", "--out", "a.png"],
+        &["render", "still", "--at", "1", "--out", "a.jpeg"],
+        &[
+            "render", "still", "--at", "1", "--size", "0x9", "--out", "a.png",
+        ],
+        &[
+            "render", "still", "--at", "1", "--size", "9000x9", "--out", "a.png",
+        ],
+        &[
+            "render", "still", "--at", "1", "--frames", "0", "--out", "a.png",
+        ],
+        &["run", "still", "--engine", "cpu", "--require-gpu"],
+        &["bench", "nothing"],
+    ] {
+        assert_eq!(code(&sward(wrong)), 2, "{wrong:?}");
+    }
+}
+
+/// With an adapter there is a picture that tells what it shows, without one the code is 4.
+#[test]
+fn a_picture_says_what_it_shows() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("cli");
+    std::fs::create_dir_all(&folder).expect("a writable target folder");
+    let file = folder.join("still.png");
+    let path = file.display().to_string();
+    let output = sward(&[
+        "render", "still", "--at", "0.1", "--size", "64x36", "--out", &path,
+    ]);
+    if code(&output) == 4 {
+        let required = std::env::var_os("SWARD_REQUIRE_GPU").is_some_and(|value| value == "1");
+        assert!(!required, "SWARD_REQUIRE_GPU=1, but there is no adapter");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains("mesa-vulkan-drivers"), "{said}");
+        return;
+    }
+    assert_eq!(code(&output), 0);
+    assert_eq!(String::from_utf8_lossy(&output.stdout).trim_end(), path);
+    let png = std::fs::File::open(&file).expect("a picture");
+    let reader = png::Decoder::new(std::io::BufReader::new(png))
+        .read_info()
+        .expect("a PNG");
+    assert_eq!((reader.info().width, reader.info().height), (64, 36));
+    let texts: Vec<(String, String)> = (reader.info().utf8_text.iter())
+        .map(|text| (text.keyword.clone(), text.get_text().expect("a text")))
+        .collect();
+    for wanted in [("Scene", "still"), ("Tick", "12"), ("Seed", "1")] {
+        let found = texts
+            .iter()
+            .any(|(key, text)| (key.as_str(), text.as_str()) == wanted);
+        assert!(found, "{wanted:?} in {texts:?}");
+    }
+}

@@ -238,8 +238,9 @@ pub(crate) fn read_mapped(
         let _ = send.send(result);
     });
     gpu.wait()?;
+    // Another thread's wait may have taken up the answer and still be passing it on.
     receive
-        .try_recv()
+        .recv()
         .map_err(|error| failed(error.to_string()))?
         .map_err(|error| failed(error.to_string()))?;
     let view = slice

@@ -11,9 +11,10 @@ use super::engine::Engine;
 const SHARES: [f64; 3] = [0.5, 0.1, 0.01];
 /// A tip is worth following from this offset on, in metres.
 const WORTH_M: f64 = 0.05;
-/// A plant counts as just let go for this share of the recovery time: one that a body holds is not
+/// A plant counts as just let go for this share of the recovery time (a half of the offset is left
+/// after 0.21 of it): one that a body holds is not
 /// touched in every sub-step.
-const LATELY: f64 = 0.05;
+const LATELY: f64 = 0.15;
 /// Two roots closer than this are one plant, in metres.
 const SAME_ROOT_M: f64 = 1e-6;
 
