@@ -180,7 +180,10 @@ impl Renderer {
         self.groups.write(gpu, frame)?;
         self.terrain.write(gpu, input.view, aspect)?;
         if let Some(blades) = &input.blades {
+            blades.detail.check()?;
             self.blades.write(gpu, input.view, aspect, blades)?;
+        } else {
+            self.blades.clear();
         }
         self.overlay.write(gpu, input.view, input.marks)?;
         self.tonemap.write(gpu, input.exposure)?;

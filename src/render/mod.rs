@@ -4,6 +4,7 @@
 //! scene, everything else for one frame. All positions go to the device relative to the eye.
 
 mod active_nodes;
+mod blade_tiles;
 mod blades;
 mod bodies;
 mod camera;
@@ -22,7 +23,8 @@ mod tonemap;
 mod view_group;
 
 pub use active_nodes::ActiveNodes;
-pub use blades::{BladeCounts, BladeDetail, BladesInput};
+pub use blade_tiles::BladeDetail;
+pub use blades::{BladeCounts, BladesInput};
 pub use bodies::BodyInstance;
 pub use camera::{Frustum, View};
 pub use error::RenderError;
@@ -64,8 +66,8 @@ pub fn layouts() -> Vec<StructLayout> {
     vec![
         view_group::Frame::layout(),
         blades::BladeLook::layout(),
-        blades::Band::layout(),
-        blades::DrawnTile::layout(),
+        blade_tiles::Band::layout(),
+        blade_tiles::DrawnTile::layout(),
         bodies::BodyRecord::layout(),
         overlay::OverlayBox::layout(),
         terrain::Ground::layout(),

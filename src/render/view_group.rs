@@ -6,7 +6,7 @@ use wgpu::{BindGroup, BindGroupLayout, BindingType, BufferUsages, ShaderStages};
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::gpu_struct;
 
-use super::blades::BladeDetail;
+use super::blade_tiles::BladeDetail;
 use super::camera::View;
 use super::pipeline::{UNIFORM, bind_group, group_layout};
 use super::shadow::ShadowFit;

@@ -1,0 +1,371 @@
+//! Laws of pictures: what hides what, what casts a shadow, what the same input gives. Trials need a
+//! graphics adapter: without one they are ignored, and with `SWARD_REQUIRE_GPU=1` the missing
+//! adapter fails.
+
+use std::sync::Arc;
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use sward::base::Vec3;
+use sward::gpu::{Gpu, PassTimer};
+use sward::render::{
+    ActiveNodes, BladeDetail, BladesInput, Exposure, FrameInput, GroundLook, Picture,
+    PictureTarget, Renderer, Sun, View, bodies_at,
+};
+use sward::scene::Scene;
+use sward::sim::{Grass, Meadow, tick};
+use sward::terrain::ColourMap;
+
+type Check = fn(&Gpu) -> Result<(), Failed>;
+
+const CHECKS: &[(&str, Check)] = &[
+    (
+        "the_same_frame_is_the_same_picture",
+        the_same_frame_is_the_same_picture,
+    ),
+    ("blades_hide_the_ground", blades_hide_the_ground),
+    ("a_body_hides_and_shades", a_body_hides_and_shades),
+    (
+        "plants_from_seeds_and_from_nodes_look_alike",
+        plants_from_seeds_and_from_nodes_look_alike,
+    ),
+    ("pressed_grass_shows", pressed_grass_shows),
+    (
+        "what_cannot_be_drawn_is_refused",
+        what_cannot_be_drawn_is_refused,
+    ),
+];
+
+/// Goldens and laws alike keep to small pictures: the software rasteriser pays per pixel.
+const SIZE: [u32; 2] = [192, 128];
+
+/// A scene with a ball that rests on the ground at the origin, after some ticks.
+struct Stage {
+    meadow: Meadow,
+    nodes: ActiveNodes,
+    renderer: Renderer,
+    target: PictureTarget,
+}
+
+impl Stage {
+    fn new(gpu: &Gpu, scene: &str, ticks: u32) -> Result<Self, Failed> {
+        let scene: Scene = ron::from_str(scene)?;
+        let mut meadow = Meadow::new(scene, &Default::default())?;
+        let mut grass = Grass::<f32>::new();
+        for _ in 0..ticks {
+            tick(&mut meadow, &mut grass)?;
+        }
+        let mut nodes = ActiveNodes::new(gpu)?;
+        nodes.copy(gpu, &meadow, &grass)?;
+        let mut renderer = Renderer::new(gpu, PictureTarget::FORMAT, SIZE)?;
+        let terrain = &meadow.scene.terrain;
+        let look = GroundLook {
+            map: &ColourMap::of(terrain, &meadow.field.ground),
+            soil_rgb: terrain.soil_rgb,
+        };
+        renderer.set_scene(gpu, &meadow.field, &look, meadow.bodies.shapes())?;
+        Ok(Self {
+            meadow,
+            nodes,
+            renderer,
+            target: PictureTarget::new(gpu, SIZE)?,
+        })
+    }
+
+    fn shoot(&mut self, gpu: &Gpu, shown: Shown) -> Result<Picture, Failed> {
+        let bodies = bodies_at(&self.meadow, 1.0);
+        let active = &self.nodes.tiles[..];
+        let input = FrameInput {
+            view: &shown.view,
+            sun: Sun::default(),
+            exposure: Exposure::default(),
+            bodies: if shown.bodies { &bodies } else { &[] },
+            blades: shown.blades.then_some(BladesInput {
+                field: &self.meadow.field,
+                wind: &self.meadow.work.wind,
+                active: if shown.active { active } else { &[] },
+                active_nodes: &self.nodes.nodes,
+                detail: BladeDetail {
+                    // So far that everything in these pictures is drawn in full.
+                    full_m: 12.0,
+                    reach_m: 40.0,
+                    tuft: 1,
+                },
+            }),
+            marks: &[],
+            time_s: 0.0,
+        };
+        let mut timer = PassTimer::new(gpu, 8);
+        self.renderer
+            .draw(gpu, &input, &self.target.view, &mut timer)?;
+        Ok(self.target.read(gpu)?)
+    }
+}
+
+/// What a picture shows.
+#[derive(Clone, Copy)]
+struct Shown {
+    view: View,
+    bodies: bool,
+    blades: bool,
+    /// Take the plants of active tiles from their nodes.
+    active: bool,
+}
+
+const ALL: Shown = Shown {
+    view: View {
+        eye_in_world: Vec3 {
+            x: 0.0,
+            y: 2.0,
+            z: 3.0,
+        },
+        forward: Vec3 {
+            x: 0.0,
+            y: -0.5547,
+            z: -0.83205,
+        },
+        fov_rad: 0.8,
+    },
+    bodies: true,
+    blades: true,
+    active: true,
+};
+
+const BALL: &str = "(bodies: [(name: \"ball\", shape: Ball(radius_m: 0.4), \
+    position_m: (0.0, 0.4, 0.0), rgb: (0.8, 0.05, 0.05))])";
+
+/// Mean red, green and blue of a rectangle, as shares of the picture's sides.
+fn mean(picture: &Picture, [left, top, right, bottom]: [f64; 4]) -> [f64; 3] {
+    let at = |share: f64, side: u32| (share * f64::from(side)) as usize;
+    let (width, height) = (picture.width, picture.height);
+    let mut sum = [0.0; 3];
+    let mut count = 0.0;
+    for y in at(top, height)..at(bottom, height) {
+        for x in at(left, width)..at(right, width) {
+            let texel = &picture.rgba8[(y * width as usize + x) * 4..][..3];
+            for (total, &byte) in sum.iter_mut().zip(texel) {
+                *total += f64::from(byte);
+            }
+            count += 1.0;
+        }
+    }
+    sum.map(|total| total / count)
+}
+
+/// Root mean square difference of two pictures in a rectangle, in steps of 8 bits.
+fn difference(a: &Picture, b: &Picture, [left, top, right, bottom]: [f64; 4]) -> f64 {
+    let at = |share: f64, side: u32| (share * f64::from(side)) as usize;
+    let columns = at(left, a.width) * 4..at(right, a.width) * 4;
+    let (mut sum, mut count) = (0.0, 0.0);
+    for y in at(top, a.height)..at(bottom, a.height) {
+        let row = y * a.width as usize * 4;
+        for x in columns.clone() {
+            let apart = f64::from(a.rgba8[row + x]) - f64::from(b.rgba8[row + x]);
+            sum += apart * apart;
+            count += 1.0;
+        }
+    }
+    f64::sqrt(sum / count)
+}
+
+const WHOLE: [f64; 4] = [0.0, 0.0, 1.0, 1.0];
+
+fn hold(condition: bool, what: impl Into<String>) -> Result<(), Failed> {
+    if condition {
+        Ok(())
+    } else {
+        Err(what.into().into())
+    }
+}
+
+fn the_same_frame_is_the_same_picture(gpu: &Gpu) -> Result<(), Failed> {
+    let mut stage = Stage::new(gpu, BALL, 3)?;
+    let first = stage.shoot(gpu, ALL)?;
+    let second = stage.shoot(gpu, ALL)?;
+    hold(first == second, "two pictures of one frame differ")
+}
+
+fn blades_hide_the_ground(gpu: &Gpu) -> Result<(), Failed> {
+    let mut stage = Stage::new(gpu, "()", 0)?;
+    let with = stage.shoot(gpu, ALL)?;
+    let counts = stage.renderer.blade_counts();
+    hold(counts.blades > 1000, format!("{counts:?}"))?;
+    let without = stage.shoot(
+        gpu,
+        Shown {
+            blades: false,
+            ..ALL
+        },
+    )?;
+    hold(
+        stage.renderer.blade_counts().blades == 0,
+        "blades are counted that were left out",
+    )?;
+    let changed = difference(&with, &without, WHOLE);
+    hold(changed > 5.0, format!("blades change {changed} steps"))?;
+    // Level, the upper half is sky, and no blade reaches up to the eye.
+    let mut level = ALL;
+    level.view.forward = Vec3::new(0.0, 0.0, -1.0);
+    let with = stage.shoot(gpu, level)?;
+    level.blades = false;
+    let without = stage.shoot(gpu, level)?;
+    let sky = [0.0, 0.0, 1.0, 0.4];
+    let changed = difference(&with, &without, sky);
+    hold(
+        changed == 0.0,
+        format!("blades change the sky by {changed}"),
+    )
+}
+
+fn a_body_hides_and_shades(gpu: &Gpu) -> Result<(), Failed> {
+    let mut stage = Stage::new(gpu, BALL, 0)?;
+    let bare = Shown {
+        blades: false,
+        ..ALL
+    };
+    let with = stage.shoot(gpu, bare)?;
+    let without = stage.shoot(
+        gpu,
+        Shown {
+            bodies: false,
+            ..bare
+        },
+    )?;
+    // Looking at the origin from (0, 2, 3): the ball's middle, 0.4 m up, is a little above the
+    // picture's.
+    let ball = mean(&with, [0.46, 0.36, 0.54, 0.44]);
+    hold(
+        ball[0] > 1.2 * ball[1],
+        format!("the red ball's middle is {ball:?}"),
+    )?;
+    // The sun stands at 215°, 34° high: the shadow of the ball's middle falls 0.4 / tan 34° =
+    // 0.59 m away, at (0.49, 0.34).
+    let view = bare.view;
+    let clip = view.clip_from_eye(1.5)
+        * glam::Vec3::from(view.from_eye(Vec3::new(0.49, 0.0, 0.34))).extend(1.0);
+    let (x, y) = (
+        f64::from(0.5 + 0.5 * clip.x / clip.w),
+        f64::from(0.5 - 0.5 * clip.y / clip.w),
+    );
+    let spot = [x - 0.02, y - 0.02, x + 0.02, y + 0.02];
+    let (shaded, lit) = (mean(&with, spot), mean(&without, spot));
+    hold(
+        shaded[1] < 0.75 * lit[1],
+        format!("ground in the shadow {shaded:?}, without the ball {lit:?}"),
+    )
+}
+
+/// The vertex shader's plants against those of the processor, through the whole picture: the nodes
+/// of an untouched tile are its wind pose.
+fn plants_from_seeds_and_from_nodes_look_alike(gpu: &Gpu) -> Result<(), Failed> {
+    // A ball 1 cm below the longest blade's length wakes the tiles under it; no blade stands so
+    // straight that it touches.
+    let scene = "(grass: (species: [(height_m: (0.3, 0.6))]), bodies: [(name: \"ball\", \
+        shape: Ball(radius_m: 0.1), position_m: (0.0, 0.69, 0.0), motion: Fixed)])";
+    let mut stage = Stage::new(gpu, scene, 2)?;
+    hold(!stage.nodes.tiles.is_empty(), "no tile is awake")?;
+    let nodes = stage.shoot(gpu, ALL)?;
+    // What a wrong pose would change.
+    stage.nodes.nodes.write(
+        gpu,
+        0,
+        &vec![[0.0, -9.0, 0.0, 0.0]; stage.nodes.nodes.len()],
+    )?;
+    let spoiled = stage.shoot(gpu, ALL)?;
+    let seeds = stage.shoot(
+        gpu,
+        Shown {
+            active: false,
+            ..ALL
+        },
+    )?;
+    // Nodes agree to about 1e-6 m, a thousandth of a pixel: only a sample at the very edge of a
+    // blade may flip. One flip in 4,000 bytes, by a quarter of a contrast of 50 steps, is a root
+    // mean square of 0.2.
+    let alike = difference(&nodes, &seeds, WHOLE);
+    let apart = difference(&spoiled, &seeds, WHOLE);
+    hold(
+        alike < 0.2 && apart > 5.0,
+        format!("alike {alike}, with spoiled nodes {apart}"),
+    )
+}
+
+fn pressed_grass_shows(gpu: &Gpu) -> Result<(), Failed> {
+    let scene = "(bodies: [(name: \"ball\", shape: Ball(radius_m: 0.4), \
+        position_m: (0.0, 0.3, 0.0), motion: Fixed)])";
+    let mut stage = Stage::new(gpu, scene, 3)?;
+    let hidden = Shown {
+        bodies: false,
+        ..ALL
+    };
+    let pressed = stage.shoot(gpu, hidden)?;
+    let upright = stage.shoot(
+        gpu,
+        Shown {
+            active: false,
+            ..hidden
+        },
+    )?;
+    // Grass within 0.4 m of the origin is pressed; more than 1.2 m away nothing has moved.
+    let near = difference(&pressed, &upright, [0.4, 0.35, 0.6, 0.6]);
+    let far = difference(&pressed, &upright, [0.0, 0.35, 0.15, 0.6]);
+    hold(
+        near > 10.0 && far < 0.01,
+        format!("near the press {near} steps, far from it {far}"),
+    )
+}
+
+fn what_cannot_be_drawn_is_refused(gpu: &Gpu) -> Result<(), Failed> {
+    for size in [[0, 10], [10, 0], [1 << 20, 10], [8192, 8192]] {
+        match Renderer::new(gpu, PictureTarget::FORMAT, size) {
+            Err(error) => {
+                let text = error.to_string();
+                let named = size.iter().all(|side| text.contains(&side.to_string()));
+                hold(named, format!("{size:?}: {text}"))?;
+            }
+            Ok(_) => {
+                // A device may well hold the last one.
+                hold(size == [8192, 8192], format!("{size:?} was taken"))?;
+            }
+        }
+    }
+    let mut stage = Stage::new(gpu, BALL, 1)?;
+    let mut bodies = bodies_at(&stage.meadow, 1.0);
+    bodies[0].shape = 99;
+    let input = FrameInput {
+        view: &ALL.view,
+        sun: Sun::default(),
+        exposure: Exposure::default(),
+        bodies: &bodies,
+        blades: None,
+        marks: &[],
+        time_s: 0.0,
+    };
+    let mut timer = PassTimer::new(gpu, 8);
+    let refused = stage
+        .renderer
+        .draw(gpu, &input, &stage.target.view, &mut timer);
+    let text = refused.err().map(|error| error.to_string());
+    hold(
+        text.as_ref().is_some_and(|text| text.contains("shape 99")),
+        format!("{text:?}"),
+    )
+}
+
+fn main() {
+    let arguments = Arguments::from_args();
+    let required = std::env::var_os("SWARD_REQUIRE_GPU").is_some_and(|v| v == "1");
+    let gpu = Arc::new(Gpu::headless());
+    let missing = matches!(&*gpu, Err(sward::gpu::GpuError::NoAdapter { .. }));
+    let trials = CHECKS
+        .iter()
+        .map(|&(name, check)| {
+            let gpu = Arc::clone(&gpu);
+            let run = move || match &*gpu {
+                Ok(gpu) => check(gpu),
+                Err(error) => Err(error.to_string().into()),
+            };
+            Trial::test(name, run).with_ignored_flag(missing && !required)
+        })
+        .collect();
+    libtest_mimic::run(&arguments, trials).exit();
+}
