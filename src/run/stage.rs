@@ -14,7 +14,7 @@ use super::timeline::Timeline;
 
 /// Longest time that one displayed frame may add, in seconds: a window that was hidden does not
 /// have to catch up.
-const LONGEST_FRAME_S: f64 = 0.1;
+const LONGEST_FRAME_S: f64 = 0.25;
 /// Passes of a frame that are timed.
 const DRAWN_PASSES: usize = 8;
 
