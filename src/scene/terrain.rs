@@ -27,8 +27,8 @@ impl Default for Terrain {
     fn default() -> Self {
         Self {
             ground: Ground::default(),
-            lush_rgb: [0.10, 0.26, 0.035],
-            dry_rgb: [0.30, 0.30, 0.075],
+            lush_rgb: [0.105, 0.185, 0.045],
+            dry_rgb: [0.25, 0.24, 0.095],
             soil_rgb: [0.13, 0.085, 0.045],
             friction: 0.8,
         }
