@@ -81,7 +81,9 @@ impl Window {
         let mut server = Process(
             Command::new("Xvfb")
                 .args(["-displayfd", "1", "-screen", "0", "1024x768x24"])
-                .args(["-nolisten", "tcp"])
+                // Else the server starts anew, deaf for a moment, whenever its last client leaves:
+                // an `xdotool` that looks for a window not yet there.
+                .args(["-noreset", "-nolisten", "tcp"])
                 .stdout(Stdio::piped())
                 .stderr(Stdio::null())
                 .spawn()?,
