@@ -21,6 +21,8 @@ pub struct EngineArguments {
 enum EngineName {
     Cpu,
     Gpu,
+    /// In double precision with exact shapes: the truth, slowly
+    Reference,
 }
 
 impl EngineArguments {
@@ -31,9 +33,10 @@ impl EngineArguments {
     /// Options that contradict each other.
     pub fn choice(&self) -> Result<EngineChoice, Failure> {
         match (self.engine, self.require_gpu) {
-            (Some(EngineName::Cpu), true) => Err(Failure::Usage(
-                "--require-gpu and --engine cpu contradict each other: leave one out".into(),
+            (Some(EngineName::Cpu | EngineName::Reference), true) => Err(Failure::Usage(
+                "--require-gpu needs the gpu engine: leave it or --engine out".into(),
             )),
+            (Some(EngineName::Reference), false) => Ok(EngineChoice::Reference),
             (Some(EngineName::Cpu), false) => Ok(EngineChoice::Cpu),
             (Some(EngineName::Gpu), _) | (None, true) => Ok(EngineChoice::Gpu),
             (None, false) => Ok(EngineChoice::Auto),
@@ -48,6 +51,7 @@ impl EngineArguments {
     pub fn open(&self) -> Result<Device, Failure> {
         let device = match self.choice()? {
             EngineChoice::Cpu => Device::Processor,
+            EngineChoice::Reference => Device::Reference,
             EngineChoice::Gpu => Device::graphics(Gpu::headless()?)?,
             EngineChoice::Auto => match Gpu::headless() {
                 Ok(gpu) if EngineChoice::Auto.is_gpu_on(&gpu) => Device::graphics(gpu)?,
@@ -70,7 +74,10 @@ impl EngineArguments {
                 gpu.adapter.driver,
                 gpu.adapter.backend
             ),
-            None => log::info!("engine: cpu, {} threads", rayon::current_num_threads()),
+            None => {
+                let (name, threads) = (device.engine_name(), rayon::current_num_threads());
+                log::info!("engine: {name}, {threads} threads");
+            }
         }
         Ok(device)
     }

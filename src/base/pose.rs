@@ -88,6 +88,14 @@ impl<R: Real> Pose<R> {
         self.turn.rotate(p) + self.place
     }
 
+    pub fn inverse(self) -> Self {
+        let turn = self.turn.inverse();
+        Self {
+            turn,
+            place: -turn.rotate(self.place),
+        }
+    }
+
     pub fn inverse_point(self, p: Vec3<R>) -> Vec3<R> {
         self.turn.inverse().rotate(p - self.place)
     }

@@ -17,6 +17,7 @@ mod link;
 mod path;
 pub mod shape;
 mod solids;
+mod true_mesh;
 mod vehicle;
 mod world;
 
@@ -24,6 +25,7 @@ pub use error::{BodyError, ShapeError};
 pub use frame::turn_of_degrees;
 pub use link::Link;
 pub use shape::{ConvexPart, DrawMesh, RigidShape, Solid};
+pub use true_mesh::{Nearest, TrueMesh};
 pub use world::{Bodies, BodyInfo, RayHit};
 
 #[cfg(test)]

@@ -1,6 +1,10 @@
 //! The true shape of a rigid body, as convex parts.
 
+use std::sync::Arc;
+
 use crate::base::Pose;
+
+use super::true_mesh::TrueMesh;
 
 /// A rigid shape: made once, shared by every body that has it.
 #[derive(Clone, Debug)]
@@ -12,6 +16,8 @@ pub struct RigidShape {
     /// Smallest half thickness among the parts, in metres: how far a body may travel in one
     /// sweep without missing a blade.
     pub half_thickness_m: f64,
+    /// The mesh that the parts stand for, if there is one and it is closed.
+    pub true_mesh: Option<Arc<TrueMesh>>,
     /// What is drawn.
     pub mesh: DrawMesh,
 }

@@ -1,6 +1,7 @@
 //! From a scene's shape to the solids, bounds and triangles of a rigid shape.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use rapier3d::math::Vector;
 
@@ -13,6 +14,7 @@ use super::decompose::convex_parts;
 use super::error::ShapeError;
 use super::frame::turn_of_degrees;
 use super::shape::{ConvexPart, DrawMesh, RigidShape, Solid};
+use super::true_mesh::TrueMesh;
 
 /// Most convex parts of a mesh: more than 128 cost the grass more than they show.
 const MOST_PARTS: u32 = 128;
@@ -190,6 +192,7 @@ fn mesh_shape(
         built.add_solid(convex(hull), half_thickness_m, Pose::IDENTITY);
     }
     built.mesh = DrawMesh::smooth(&positions, &mesh.triangles);
+    built.true_mesh = TrueMesh::new(&scaled, &mesh.triangles).map(Arc::new);
     Ok(built.finish())
 }
 
@@ -197,6 +200,7 @@ fn mesh_shape(
 #[derive(Default)]
 struct Built {
     parts: Vec<ConvexPart>,
+    true_mesh: Option<Arc<TrueMesh>>,
     mesh: DrawMesh,
 }
 
@@ -221,6 +225,7 @@ impl Built {
             bounding_radius_m: self.parts.iter().map(farthest).fold(0.0, f64::max),
             half_thickness_m: thickness.fold(f64::INFINITY, f64::min),
             parts: self.parts,
+            true_mesh: self.true_mesh,
             mesh: self.mesh,
         }
     }

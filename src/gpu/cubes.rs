@@ -7,6 +7,7 @@ use super::passes::depth_cube::DepthCubePass;
 use super::tick_data::{CubeJob, PartRecord, SolidRecord};
 use super::{Buffer, Gpu, GpuError};
 use crate::base::Vec3;
+use crate::scene::method::{Push, Sampling};
 use crate::sim::depth_cube::{COVER_MARGIN_M, DepthCube};
 use crate::sim::parts::Parts;
 
@@ -143,6 +144,8 @@ impl Cubes {
             low: Vec3::of_f32(solid.low),
             high: Vec3::of_f32(solid.high),
             resolution: solid.resolution,
+            sampling: Sampling::default(),
+            push: Push::default(),
             texels: texels[first..].to_vec(),
         }))
     }

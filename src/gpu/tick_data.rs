@@ -7,6 +7,7 @@ use crate::gpu_struct;
 use crate::scene::Solver;
 use crate::sim::contact::{HOLD_M, memory_key};
 use crate::sim::meadow::Meadow;
+use crate::sim::parts::Tested;
 use crate::sim::relax::RelaxSettings;
 use crate::sim::solid::Solid;
 use crate::sim::work::Contact;
@@ -121,6 +122,9 @@ impl SolidRecord {
                 }));
                 (SOLID_CONVEX, [0.0; 3])
             }
+            // Methods with whole bodies are refused before a kernel could meet one: see
+            // `GpuGrass::new`. A convex solid without planes would hold everything.
+            Solid::Union(_) | Solid::Mesh { .. } => (SOLID_BALL, [0.0; 3]),
         };
         let [low, high] = solid.bounds().map(Vec3::to_f32);
         Self {
@@ -147,7 +151,7 @@ impl ContactRecord {
     /// form.
     pub fn new(contact: &Contact, solid: &SolidRecord) -> Self {
         let (from, to): (Pose<f32>, Pose<f32>) = (contact.from.cast(), contact.to.cast());
-        let uses_cube = contact.uses_cube && solid.has_cube();
+        let uses_cube = contact.tested == Tested::Cube && solid.has_cube();
         Self {
             from_turn: from.turn.to_array(),
             to_turn: to.turn.to_array(),

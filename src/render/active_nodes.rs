@@ -7,6 +7,8 @@ use crate::field::TileId;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::sim::Meadow;
 use crate::sim::cpu::poses;
+use crate::base::Real;
+use crate::sim::recover::Fading;
 use crate::sim::measure::GrassState;
 
 /// A copy of what an engine on the processor knows of its active tiles, for drawing. It is laid
@@ -32,16 +34,16 @@ impl ActiveNodes {
     ///
     /// # Errors
     /// More active tiles than the device can bind the nodes of.
-    pub fn copy(
+    pub fn copy<R: Real>(
         &mut self,
         gpu: &Gpu,
         meadow: &Meadow,
-        state: &(impl GrassState<f32> + Sync),
+        state: &(impl GrassState<R> + Sync),
     ) -> Result<(), GpuError> {
         let (field, work) = (&meadow.field, &meadow.work);
         let rows = field.table.segments as usize + 1;
         let plants = field.grid.plants_per_tile();
-        let step_over_t = meadow.step_over_t() as f32;
+        let fading = Fading::<R>::new(meadow);
         // Tiles are packed anew at every copy, so that the buffer follows the active tiles.
         let mut nodes = vec![[0.0; 4]; work.tiles.len() * plants as usize * rows];
         nodes
@@ -55,9 +57,10 @@ impl ActiveNodes {
                     let Some(plant) = field.plant(&tile.anchor, tile.tile, place) else {
                         continue;
                     };
-                    let (_, pose) = poses(field, work, step_over_t, tile, &plant, slab, place);
+                    let (_, pose) = poses(field, work, &fading, tile, &plant, slab, place);
                     for (node, out) in pose.iter().zip(out) {
-                        *out = [node.x, node.y, node.z, 1.0];
+                        let [x, y, z] = node.to_f32();
+                        *out = [x, y, z, 1.0];
                     }
                 }
             });

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeSet;
 
+use crate::base::Real;
 use crate::field::TileId;
 use crate::gpu::{Gpu, GpuError, GpuGrass, GpuState, GrassKernels, TickError};
 use crate::sim::measure::{self, GrassState, Snapshot, Standing};
+use crate::sim::reference;
 use crate::sim::work::TileWork;
 use crate::sim::{Grass, Meadow};
 
@@ -16,6 +18,7 @@ pub enum EngineChoice {
     Auto,
     Cpu,
     Gpu,
+    Reference,
 }
 
 impl EngineChoice {
@@ -23,7 +26,7 @@ impl EngineChoice {
     pub fn is_gpu_on(self, gpu: &Gpu) -> bool {
         match self {
             Self::Auto => !gpu.adapter.is_software,
-            Self::Cpu => false,
+            Self::Cpu | Self::Reference => false,
             Self::Gpu => true,
         }
     }
@@ -33,6 +36,8 @@ impl EngineChoice {
 pub enum Engine {
     Cpu(Grass<f32>),
     Gpu(Box<GpuEngine>),
+    /// In `f64`; its meadow has the settings of [`reference::solver`].
+    Reference(Box<Grass<f64>>),
 }
 
 /// The grass on the device, and a copy of its state for measures.
@@ -58,6 +63,13 @@ impl Engine {
         Self::Cpu(Grass::new())
     }
 
+    /// The engine that others are compared with. Gives the meadow's solver its settings, so that it
+    /// has to be asked for before the first sub-step.
+    pub fn reference(meadow: &mut Meadow) -> Self {
+        meadow.scene.solver = reference::solver(&meadow.scene.solver);
+        Self::Reference(Box::default())
+    }
+
     /// An engine that computes on a device. Lowers the meadow's slab limit to what it can bind.
     ///
     /// # Errors
@@ -78,6 +90,7 @@ impl Engine {
     pub fn tick(&mut self, meadow: &mut Meadow) -> Result<(), TickError> {
         match self {
             Self::Cpu(grass) => Ok(crate::sim::tick(meadow, grass)?),
+            Self::Reference(grass) => Ok(crate::sim::tick(meadow, grass)?),
             Self::Gpu(engine) => {
                 engine.state = None;
                 crate::gpu::tick(meadow, &mut engine.grass)
@@ -89,6 +102,7 @@ impl Engine {
         match self {
             Self::Cpu(_) => "cpu",
             Self::Gpu(_) => "gpu",
+            Self::Reference(_) => "reference",
         }
     }
 
@@ -100,6 +114,7 @@ impl Engine {
     pub fn snapshot(&mut self, meadow: &Meadow) -> Result<Snapshot, GpuError> {
         Ok(match self {
             Self::Cpu(grass) => measure::snapshot(meadow, grass),
+            Self::Reference(grass) => measure::snapshot(meadow, grass.as_ref()),
             Self::Gpu(engine) => measure::snapshot(meadow, engine.state(meadow)?),
         })
     }
@@ -113,12 +128,29 @@ impl Engine {
         &mut self,
         meadow: &Meadow,
         tile: &TileWork,
-    ) -> Result<Vec<Standing<f32>>, GpuError> {
-        let slab = match self {
-            Self::Cpu(grass) => GrassState::slab(grass, tile.slab),
-            Self::Gpu(engine) => engine.state(meadow)?.slab(tile.slab),
-        };
-        Ok(slab.map_or_else(Vec::new, |slab| measure::standing(meadow, tile, slab)))
+    ) -> Result<Vec<Standing<f64>>, GpuError> {
+        Ok(match self {
+            Self::Cpu(grass) => all_standing(meadow, tile, grass),
+            Self::Reference(grass) => all_standing(meadow, tile, grass.as_ref()),
+            Self::Gpu(engine) => all_standing(meadow, tile, engine.state(meadow)?),
+        })
+    }
+
+    /// Every plant of a tile as it stands, awake or not, in the order of places.
+    ///
+    /// # Errors
+    ///
+    /// The device's.
+    pub fn of_tile(
+        &mut self,
+        meadow: &Meadow,
+        tile: TileId,
+    ) -> Result<Vec<Standing<f64>>, GpuError> {
+        Ok(match self {
+            Self::Cpu(grass) => widened(measure::of_tile(meadow, grass, tile)),
+            Self::Reference(grass) => measure::of_tile(meadow, grass.as_ref(), tile),
+            Self::Gpu(engine) => widened(measure::of_tile(meadow, engine.state(meadow)?, tile)),
+        })
     }
 
     /// The plants rooted near a place.
@@ -131,10 +163,13 @@ impl Engine {
         meadow: &Meadow,
         place_m: [f64; 2],
         within_m: f64,
-    ) -> Result<Vec<Standing<f32>>, GpuError> {
+    ) -> Result<Vec<Standing<f64>>, GpuError> {
         Ok(match self {
-            Self::Cpu(grass) => measure::near(meadow, grass, place_m, within_m),
-            Self::Gpu(engine) => measure::near(meadow, engine.state(meadow)?, place_m, within_m),
+            Self::Cpu(grass) => widened(measure::near(meadow, grass, place_m, within_m)),
+            Self::Reference(grass) => measure::near(meadow, grass.as_ref(), place_m, within_m),
+            Self::Gpu(engine) => {
+                widened(measure::near(meadow, engine.state(meadow)?, place_m, within_m))
+            }
         })
     }
 
@@ -152,6 +187,7 @@ impl Engine {
     ) -> Result<BTreeSet<(TileId, u32)>, GpuError> {
         Ok(match self {
             Self::Cpu(grass) => measure::bent(meadow, grass, body, ticks, far_m),
+            Self::Reference(grass) => measure::bent(meadow, grass.as_ref(), body, ticks, far_m),
             Self::Gpu(engine) => measure::bent(meadow, engine.state(meadow)?, body, ticks, far_m),
         })
     }
@@ -160,7 +196,7 @@ impl Engine {
     pub fn state_hash(&self, meadow: &Meadow) -> Option<u64> {
         match self {
             Self::Cpu(grass) => Some(measure::state_hash(meadow, grass)),
-            Self::Gpu(_) => None,
+            Self::Reference(_) | Self::Gpu(_) => None,
         }
     }
 
@@ -168,14 +204,8 @@ impl Engine {
     /// whose times come late: see [`Engine::device_pass_ms`].
     pub fn pass_ms(&self) -> Vec<(&'static str, f64)> {
         match self {
-            Self::Cpu(grass) => {
-                let ms = |d: std::time::Duration| d.as_secs_f64() * 1e3;
-                vec![
-                    ("depth_cubes", ms(grass.times.depth_cubes)),
-                    ("collide", ms(grass.times.collide)),
-                    ("relax", ms(grass.times.relax)),
-                ]
-            }
+            Self::Cpu(grass) => grass.times.in_ms(),
+            Self::Reference(grass) => grass.times.in_ms(),
             Self::Gpu(_) => Vec::new(),
         }
     }
@@ -184,8 +214,23 @@ impl Engine {
     /// Empty for the cpu engine, and where the device has no timestamps.
     pub fn device_pass_ms(&self) -> Vec<(&'static str, f64)> {
         match self {
-            Self::Cpu(_) => Vec::new(),
+            Self::Cpu(_) | Self::Reference(_) => Vec::new(),
             Self::Gpu(engine) => engine.grass.timer.medians_ms(),
         }
     }
+}
+
+fn all_standing<R: Real>(
+    meadow: &Meadow,
+    tile: &TileWork,
+    state: &impl GrassState<R>,
+) -> Vec<Standing<f64>> {
+    let slab = state.slab(tile.slab);
+    slab.map_or_else(Vec::new, |slab| {
+        widened(measure::standing(meadow, tile, slab))
+    })
+}
+
+fn widened<R: Real>(plants: Vec<Standing<R>>) -> Vec<Standing<f64>> {
+    plants.into_iter().map(Standing::widened).collect()
 }

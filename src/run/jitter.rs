@@ -10,7 +10,7 @@ use crate::sim::Meadow;
 use super::engine::Engine;
 
 /// Nodes of held plants by tile and order in it.
-type Held = BTreeMap<(TileId, usize), Vec<Vec3<f32>>>;
+type Held = BTreeMap<(TileId, usize), Vec<Vec3<f64>>>;
 
 /// Follows the plants that a body holds, from frame to frame, while no wind blows and every body
 /// stands still.
@@ -51,7 +51,7 @@ impl Jitter {
         let seen_before = (held.iter()).filter_map(|(key, now)| Some((now, self.held.get(key)?)));
         let moved_m = seen_before
             .flat_map(|(now, before)| now.iter().zip(before))
-            .map(|(now, before)| f64::from((*now - *before).length()))
+            .map(|(now, before)| (*now - *before).length())
             .reduce(f64::max);
         self.largest_m = self.largest_m.into_iter().chain(moved_m).reduce(f64::max);
         self.held = held;

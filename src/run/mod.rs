@@ -1,5 +1,6 @@
 //! Running scenes: the clock, what is measured, what is judged, reports and benches.
 
+pub mod against;
 pub mod bench;
 mod check;
 pub mod engine;
@@ -7,6 +8,7 @@ mod exit;
 mod jitter;
 pub mod judge;
 pub mod junit;
+pub mod methods;
 mod pass_times;
 pub mod release;
 pub mod report;

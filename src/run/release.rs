@@ -133,7 +133,7 @@ fn left(meadow: &Meadow, touched_at: u32) -> f64 {
     offset_left(meadow.ticks - touched_at, meadow.step_over_t())
 }
 
-fn tip_m(plant: &Standing<f32>) -> f64 {
+fn tip_m(plant: &Standing<f64>) -> f64 {
     let tips = plant.nodes.last().zip(plant.wind.last());
-    tips.map_or(0.0, |(now, wind)| f64::from((*now - *wind).length()))
+    tips.map_or(0.0, |(now, wind)| (*now - *wind).length())
 }

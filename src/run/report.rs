@@ -105,6 +105,8 @@ pub struct Metrics {
     pub rms_penetration_m: f64,
     /// Largest distance by which a plant was pushed past the surface.
     pub over_push_m: f64,
+    /// The same as `max_penetration_m` for the middles of segments whose ends are outside.
+    pub max_middle_penetration_m: f64,
     /// Largest change of a segment's length, as a share of it.
     pub max_length_strain: f64,
     /// Largest distance of a node from its wind pose.
@@ -123,6 +125,15 @@ pub struct Metrics {
     pub imprint_iou: Option<f64>,
     /// Plants that ended on another side of a body than the reference's; null without a comparison.
     pub side_flips: Option<u64>,
+    /// World x and z of their roots, in metres.
+    pub flipped_roots_m: Vec<[f64; 2]>,
+    /// Plants touched in either run; null without a comparison, like the two that follow.
+    pub compared_plants: Option<u64>,
+    /// Root mean square distance of the nodes of touched plants on the same side from the
+    /// reference's, over all frames.
+    pub pose_rms_m: Option<f64>,
+    /// The distance that 95% of the plants and frames do not exceed.
+    pub pose_p95_m: Option<f64>,
     /// Nodes that lay on the ground inside a body, summed over frames.
     pub pinched_vertices: u64,
     pub tiles_total: u64,
@@ -229,12 +240,14 @@ impl Expectation {
 impl Metrics {
     fn of(outcome: &Outcome) -> Self {
         let (watch, meadow) = (&outcome.watch, &outcome.meadow);
+        let difference = outcome.difference.as_ref();
         let [half, tenth, hundredth] = watch.release.weight_s();
         Self {
             max_penetration_m: watch.max_penetration_m(),
             p999_penetration_m: watch.p999_penetration_m(),
             rms_penetration_m: watch.rms_penetration_m(),
             over_push_m: watch.over_push_m,
+            max_middle_penetration_m: watch.max_middle_m,
             max_length_strain: watch.max_strain,
             max_offset_m: watch.max_offset_m,
             jitter_m_per_frame: watch.jitter.largest_m(),
@@ -242,8 +255,12 @@ impl Metrics {
             recovery_tenth_s: tenth,
             recovery_hundredth_s: hundredth,
             tip_recovery_s: watch.release.tip_s(),
-            imprint_iou: None,
-            side_flips: None,
+            imprint_iou: difference.and_then(|d| d.imprint_iou),
+            side_flips: difference.map(|d| d.side_flips),
+            flipped_roots_m: difference.map_or_else(Vec::new, |d| d.flipped_roots_m.clone()),
+            compared_plants: difference.map(|d| d.touched_plants),
+            pose_rms_m: difference.map(|d| d.pose_rms_m),
+            pose_p95_m: difference.map(|d| d.pose_p95_m),
             pinched_vertices: watch.pinched,
             tiles_total: u64::from(meadow.field.grid.tile_count()),
             tiles_active_peak: meadow.tiles.peak as u64,
@@ -346,9 +363,12 @@ pub(super) mod tests {
         metrics.sort_unstable();
         let want = [
             "capped_sweeps",
+            "compared_plants",
+            "flipped_roots_m",
             "imprint_iou",
             "jitter_m_per_frame",
             "max_length_strain",
+            "max_middle_penetration_m",
             "max_offset_m",
             "max_penetration_m",
             "nan_count",
@@ -356,6 +376,8 @@ pub(super) mod tests {
             "p999_penetration_m",
             "pinched_vertices",
             "plants_simulated_peak",
+            "pose_p95_m",
+            "pose_rms_m",
             "quarantined",
             "recovery_half_s",
             "recovery_hundredth_s",

@@ -7,8 +7,10 @@ use crate::scene::LoadedScene;
 use crate::sim::measure::Snapshot;
 use crate::sim::{Meadow, MeadowError};
 
+use super::against::{Against, Difference};
 use super::engine::Engine;
 use super::judge::{Judge, Verdict, exceeded_limits};
+use super::methods::NamedMethod;
 use super::pass_times::PassTimes;
 use super::timeline::Timeline;
 use super::watch::Watch;
@@ -22,6 +24,10 @@ pub struct RunOptions {
     pub substep_s: Option<f64>,
     /// Seed of the grass instead of the scene's.
     pub seed: Option<u32>,
+    /// Settings instead of the scene's.
+    pub method: Option<&'static NamedMethod>,
+    /// Runs the reference engine beside the other and compares them.
+    pub against_reference: bool,
 }
 
 impl Default for RunOptions {
@@ -30,6 +36,8 @@ impl Default for RunOptions {
             hz: 60.0,
             substep_s: None,
             seed: None,
+            method: None,
+            against_reference: false,
         }
     }
 }
@@ -47,6 +55,8 @@ pub struct Outcome {
     pub pass_ms: BTreeMap<String, f64>,
     /// Wall-clock seconds of the run without setting up.
     pub wall_s: f64,
+    /// How far it was from the reference, where that was asked for.
+    pub difference: Option<Difference>,
 }
 
 impl Outcome {
@@ -70,6 +80,8 @@ pub struct Frame<'a> {
 pub enum Device {
     /// The processor, for the cpu engine.
     Processor,
+    /// The processor, for the reference engine.
+    Reference,
     /// A graphics device with its compiled passes, for the gpu engine.
     Graphics(Gpu, Box<GrassKernels>),
 }
@@ -88,7 +100,7 @@ impl Device {
     /// The graphics device, if it is one.
     pub fn gpu(&self) -> Option<&Gpu> {
         match self {
-            Self::Processor => None,
+            Self::Processor | Self::Reference => None,
             Self::Graphics(gpu, _) => Some(gpu),
         }
     }
@@ -97,6 +109,7 @@ impl Device {
     pub fn engine_name(&self) -> &'static str {
         match self {
             Self::Processor => "cpu",
+            Self::Reference => "reference",
             Self::Graphics(..) => "gpu",
         }
     }
@@ -109,6 +122,7 @@ impl Device {
     pub fn engine(&self, meadow: &mut Meadow) -> Result<Engine, GpuError> {
         match self {
             Self::Processor => Ok(Engine::cpu()),
+            Self::Reference => Ok(Engine::reference(meadow)),
             Self::Graphics(gpu, kernels) => Engine::gpu(gpu, kernels, meadow),
         }
     }
@@ -153,6 +167,14 @@ pub fn run_scene(
     let mut scene = loaded.scene.clone();
     scene.solver.substep_s = options.substep_s.unwrap_or(scene.solver.substep_s);
     scene.grass.seed = options.seed.unwrap_or(scene.grass.seed);
+    let mut against = None;
+    if options.against_reference {
+        let reference = Against::new(scene.clone(), &loaded.assets);
+        against = Some(reference.map_err(|error| RunError::new(name, error))?);
+    }
+    if let Some(method) = options.method {
+        method.apply(&mut scene.solver);
+    }
     let duration_s = scene.duration_s;
     let mut meadow =
         Meadow::new(scene, &loaded.assets).map_err(|error| RunError::new(name, error))?;
@@ -183,6 +205,14 @@ pub fn run_scene(
         watch
             .frame(&meadow, &mut engine)
             .map_err(|error| RunError::new(name, error))?;
+        if let Some(against) = &mut against {
+            against
+                .catch_up(meadow.time_s())
+                .map_err(|error| RunError::new(name, error))?;
+            against
+                .frame(&meadow, &mut engine)
+                .map_err(|error| RunError::new(name, error))?;
+        }
         each_frame(&Frame {
             done: (frame + 1) as f64 / frames as f64,
             meadow: &meadow,
@@ -206,5 +236,6 @@ pub fn run_scene(
         engine,
         pass_ms,
         wall_s,
+        difference: against.map(|against| against.finish()),
     })
 }

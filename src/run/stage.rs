@@ -212,11 +212,12 @@ impl Stage {
         let meadow = &self.meadow;
         match &mut self.engine {
             Engine::Cpu(grass) => self.nodes.copy(gpu, meadow, grass)?,
+            Engine::Reference(grass) => self.nodes.copy(gpu, meadow, grass.as_ref())?,
             Engine::Gpu(engine) => engine.grass.recover()?,
         }
         let slabs = active_slabs(meadow);
         let (active, active_nodes) = match &self.engine {
-            Engine::Cpu(_) => (&self.nodes.tiles, &self.nodes.nodes),
+            Engine::Cpu(_) | Engine::Reference(_) => (&self.nodes.tiles, &self.nodes.nodes),
             Engine::Gpu(engine) => (&slabs, engine.grass.drawn()),
         };
         let marks = if overlay {
@@ -274,7 +275,9 @@ fn lay_out(
     choice: EngineChoice,
 ) -> Result<(Meadow, Engine), StageError> {
     let mut meadow = Meadow::new(loaded.scene.clone(), &loaded.assets)?;
-    let engine = if choice.is_gpu_on(gpu) {
+    let engine = if choice == EngineChoice::Reference {
+        Engine::reference(&mut meadow)
+    } else if choice.is_gpu_on(gpu) {
         Engine::gpu(gpu, kernels, &mut meadow)?
     } else {
         Engine::cpu()

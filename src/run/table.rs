@@ -111,6 +111,21 @@ fn write_metrics(metrics: &Metrics, out: &mut impl Write) -> io::Result<()> {
         seconds(metrics.recovery_tenth_s),
         seconds(metrics.recovery_hundredth_s)
     )?;
+    if let (Some(rms), Some(p95), Some(flips), Some(plants)) = (
+        metrics.pose_rms_m,
+        metrics.pose_p95_m,
+        metrics.side_flips,
+        metrics.compared_plants,
+    ) {
+        let overlap = metrics.imprint_iou.map_or("-".into(), |o| format!("{o:.4}"));
+        writeln!(
+            out,
+            "  reference    {} rms, {} for 95%, imprint overlap {overlap}, {flips} of {plants} plants \
+             on another side",
+            mm(rms),
+            mm(p95)
+        )?;
+    }
     writeln!(
         out,
         "  peak         {} of {} tiles, {} plants, {} bytes of state",

@@ -19,6 +19,8 @@ pub struct Watch {
     pub worst: Depth,
     pub pinched: u64,
     pub over_push_m: f64,
+    /// Largest depth of the middle of a segment whose ends are outside, in metres.
+    pub max_middle_m: f64,
     pub max_strain: f64,
     pub max_offset_m: f64,
     pub not_finite: u64,
@@ -61,6 +63,8 @@ impl Watch {
         }
         self.pinched += frame.pinched;
         self.over_push_m = self.over_push_m.max(frame.over_push_m);
+        let deepest = frame.middle_depths_m.iter().copied().fold(0.0, f64::max);
+        self.max_middle_m = self.max_middle_m.max(deepest);
         self.max_strain = self.max_strain.max(frame.max_strain);
         self.max_offset_m = self.max_offset_m.max(frame.max_offset_m);
         self.not_finite += frame.not_finite;

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::limits;
+use super::method::Method;
 
 /// Settings of the simulation.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
@@ -46,6 +47,8 @@ pub struct Solver {
     pub seeding_cell_m: f32,
     pub philox: PhiloxRounds,
     pub root: Root,
+    /// Which formulas are used where there are several.
+    pub method: Method,
 }
 
 impl Default for Solver {
@@ -64,6 +67,7 @@ impl Default for Solver {
             seeding_cell_m: 0.5,
             philox: PhiloxRounds::Seven,
             root: Root::Double,
+            method: Method::default(),
         }
     }
 }

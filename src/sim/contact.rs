@@ -5,8 +5,9 @@
 use crate::base::{Pose, Real, Vec3};
 
 use super::depth_cube::DepthCube;
-use super::parts::Part;
+use super::parts::{Part, Tested};
 use super::solid::{Exit, NO_FACE, Reach, Solid};
+use super::voxel_field::VoxelField;
 use super::work::Contact;
 
 /// One part near a tile, ready for its vertices.
@@ -28,6 +29,7 @@ pub struct Touch<'a, R> {
 enum ColliderOf<'a, R> {
     Cube(&'a DepthCube),
     Analytic(&'a Solid<R>),
+    Voxels(&'a VoxelField),
 }
 
 /// Bits of a vertex's memory that hold the face; 0 there means none, others are the face + 1.
@@ -41,8 +43,9 @@ impl<'a, R: Real> Touch<'a, R> {
     /// Prepares a contact. A part whose cube is not drawn yet is tested by its closed form.
     /// `grown` is the part's solid with the skin, in the engine's float.
     pub fn new(contact: &Contact, part: &'a Part, grown: &'a Solid<R>) -> Self {
-        let collider = match &part.cube {
-            Some(cube) if contact.uses_cube => ColliderOf::Cube(cube),
+        let collider = match (contact.tested, &part.cube, &part.voxels) {
+            (Tested::Cube, Some(cube), _) => ColliderOf::Cube(cube),
+            (Tested::Voxels, _, Some(voxels)) => ColliderOf::Voxels(voxels),
             _ => ColliderOf::Analytic(grown),
         };
         Self {
@@ -50,7 +53,7 @@ impl<'a, R: Real> Touch<'a, R> {
             to: contact.to.cast(),
             radius_m: R::of(contact.radius_m),
             sweeps: contact.sweeps,
-            hold_m: R::of(hold_m(part, contact.uses_cube)),
+            hold_m: R::of(hold_m(part, contact.tested)),
             grown,
             key: memory_key(contact),
             collider,
@@ -77,6 +80,7 @@ impl<'a, R: Real> Touch<'a, R> {
         match self.collider {
             ColliderOf::Cube(cube) => cube.inside(p),
             ColliderOf::Analytic(solid) => solid.depth(p) > R::ZERO,
+            ColliderOf::Voxels(voxels) => voxels.inside(p),
         }
     }
 
@@ -110,6 +114,7 @@ impl<'a, R: Real> Touch<'a, R> {
         let exit = match self.collider {
             ColliderOf::Cube(cube) => cube.exit(p, kept, &reach),
             ColliderOf::Analytic(solid) => solid.exit(p, kept, &reach),
+            ColliderOf::Voxels(voxels) => voxels.exit(p),
         }?;
         *memory = self.key | ((exit.face + 1) & FACE_MASK);
         Some(Exit {
@@ -120,10 +125,14 @@ impl<'a, R: Real> Touch<'a, R> {
 }
 
 /// How far off a body still holds a plant it pushed before, in metres: as far as a push may
-/// overshoot, which is half a texel for a depth cube.
-pub fn hold_m(part: &Part, uses_cube: bool) -> f64 {
-    let cube = part.cube.as_ref().filter(|_| uses_cube);
-    HOLD_M + cube.map_or(0.0, |cube| 0.5 * f64::from(cube.texel_m()))
+/// overshoot, which is half a texel for a depth cube and half a cell for a voxel field.
+pub fn hold_m(part: &Part, tested: Tested) -> f64 {
+    let step_m = match tested {
+        Tested::Closed => None,
+        Tested::Cube => part.cube.as_ref().map(DepthCube::texel_m),
+        Tested::Voxels => part.voxels.as_ref().map(VoxelField::cell_m),
+    };
+    HOLD_M + 0.5 * f64::from(step_m.unwrap_or(0.0))
 }
 
 /// See [`hold_m`].

@@ -10,15 +10,18 @@ use rayon::prelude::*;
 use crate::base::{Real, Vec3};
 use crate::field::grid::ground_in_anchor;
 use crate::field::{Field, Nodes, Plant, wind_pose};
+use crate::scene::Solver;
+use crate::scene::method::Recovery;
 
 use super::collide;
 use super::contact::Touch;
 use super::depth_cube::{COVER_MARGIN_M, DepthCube};
 use super::meadow::Meadow;
-use super::recover::recovering_pose;
+use super::recover::{Fading, fade_literally, recovering_pose};
 use super::relax::{self, Place, RelaxSettings};
 use super::slab::Slab;
 use super::solid::Solid;
+use super::voxel_field::VoxelField;
 use super::work::{TileWork, Work};
 
 /// State and scratch of the grass in float `R`.
@@ -55,6 +58,18 @@ pub struct PassTimes {
     pub relax: Duration,
 }
 
+impl PassTimes {
+    /// Milliseconds by the pass's name.
+    pub fn in_ms(&self) -> Vec<(&'static str, f64)> {
+        let ms = |d: Duration| d.as_secs_f64() * 1e3;
+        vec![
+            ("depth_cubes", ms(self.depth_cubes)),
+            ("collide", ms(self.collide)),
+            ("relax", ms(self.relax)),
+        ]
+    }
+}
+
 impl<R: Real> Grass<R> {
     pub fn new() -> Self {
         Self {
@@ -81,7 +96,7 @@ impl<R: Real> Grass<R> {
         }
     }
 
-    /// Draws the depth cubes that are wanted for the first time.
+    /// Draws the depth cubes, and samples the voxel fields, that are wanted for the first time.
     pub fn draw_depth_cubes(&mut self, meadow: &mut Meadow) {
         let start = Instant::now();
         let skin = f64::from(meadow.scene.solver.skin_m);
@@ -93,10 +108,14 @@ impl<R: Real> Grass<R> {
         let parts = &meadow.parts;
         let drawn: Vec<(usize, DepthCube)> = undrawn
             .into_par_iter()
-            .map(|index| (index, draw_cube(parts, index, resolution)))
+            .map(|index| (index, draw_cube(parts, index, &meadow.scene.solver)))
             .collect();
         for (index, cube) in drawn {
             meadow.parts.parts[index].cube = Some(cube);
+        }
+        for index in meadow.parts.unsampled() {
+            let part = &mut meadow.parts.parts[index];
+            part.voxels = Some(VoxelField::draw(&part.grown, resolution));
         }
         self.times.depth_cubes += start.elapsed();
     }
@@ -145,7 +164,24 @@ impl<R: Real> Grass<R> {
         self.pushed = results.iter().map(|r| r.0).sum();
         let rounds = results.iter().map(|r| r.1).max().unwrap_or(0);
         self.rounds_peak = self.rounds_peak.max(rounds);
+        if meadow.scene.solver.method.recovery == Recovery::Literal {
+            self.fade_literally(meadow);
+        }
         self.times.relax += start.elapsed();
+    }
+
+    /// Rewrites the offset of every plant that was not touched in this sub-step.
+    fn fade_literally(&mut self, meadow: &Meadow) {
+        let step_over_t = R::of(meadow.step_over_t());
+        let (now, segments) = (meadow.work.now, meadow.field.table.segments as usize);
+        self.slabs.par_iter_mut().flatten().for_each(|slab| {
+            let plants = slab.touched_at.iter().zip(slab.offsets.chunks_mut(segments));
+            for (&touched_at, offsets) in plants {
+                if touched_at != 0 && touched_at != now {
+                    fade_literally(offsets, now - touched_at, step_over_t);
+                }
+            }
+        });
     }
 
     /// The state of a slab in use.
@@ -154,22 +190,27 @@ impl<R: Real> Grass<R> {
     }
 }
 
-fn draw_cube(parts: &super::parts::Parts, index: usize, resolution: u32) -> DepthCube {
+fn draw_cube(parts: &super::parts::Parts, index: usize, solver: &Solver) -> DepthCube {
     let part = &parts.parts[index];
     let siblings: Vec<_> = parts.siblings(index).collect();
-    DepthCube::draw(&part.grown, resolution, |point| {
+    let covered = |point: Vec3<f32>| {
         let in_body = part.pose.point(Vec3::of(point.to_f64()));
         siblings
             .iter()
             .any(|other| other.solid.depth(other.pose.inverse_point(in_body)) > COVER_MARGIN_M)
-    })
+    };
+    DepthCube {
+        sampling: solver.method.sampling,
+        push: solver.method.push,
+        ..DepthCube::draw(&part.grown, solver.cube_resolution, covered)
+    }
 }
 
 /// A plant's wind pose and its pose of now.
 pub fn poses<R: Real>(
     field: &Field,
     work: &Work,
-    step_over_t: R,
+    fading: &Fading<R>,
     tile: &TileWork,
     plant: &Plant,
     slab: &Slab<R>,
@@ -186,7 +227,7 @@ pub fn poses<R: Real>(
         &wind,
         &slab.offsets[first..first + segments],
         work.now - touched_at,
-        step_over_t,
+        fading,
         segment_length(plant, segments),
     );
     (wind, pose)
@@ -203,14 +244,14 @@ fn was_touched(work: &Work, touched_at: u32) -> bool {
 fn poses_before<R: Real>(
     field: &Field,
     work: &Work,
-    step_over_t: R,
+    fading: &Fading<R>,
     tile: &TileWork,
     plant: &Plant,
     slab: &Slab<R>,
     place: u32,
 ) -> (Nodes<R>, Nodes<R>) {
     if !was_touched(work, slab.touched_at[place as usize]) {
-        return poses(field, work, step_over_t, tile, plant, slab, place);
+        return poses(field, work, fading, tile, plant, slab, place);
     }
     let segments = field.table.segments as usize;
     let mut pose = wind_pose(
@@ -253,7 +294,7 @@ fn touched_plants<R: Real>(
 ) -> Vec<Touched> {
     let field = &meadow.field;
     let segments = field.table.segments as usize;
-    let step_over_t = R::of(meadow.step_over_t());
+    let fading = Fading::new(meadow);
     let touches = touches_of(meadow, grown, tile);
     let mut found = Vec::new();
     for place in 0..field.grid.plants_per_tile() {
@@ -265,7 +306,7 @@ fn touched_plants<R: Real>(
         if sweeps == 0 {
             continue;
         }
-        let (_, pose) = poses_before(field, &meadow.work, step_over_t, tile, &plant, slab, place);
+        let (_, pose) = poses_before(field, &meadow.work, &fading, tile, &plant, slab, place);
         let before = was_touched(&meadow.work, slab.touched_at[place as usize]);
         let pinned = |p: Vec3<R>| {
             before
@@ -291,7 +332,7 @@ fn respond<R: Real>(
 ) -> (u64, u32) {
     let field = &meadow.field;
     let segments = field.table.segments as usize;
-    let step_over_t = R::of(meadow.step_over_t());
+    let fading = Fading::new(meadow);
     let touches = touches_of(meadow, grown, tile);
     let mut rounds_peak = 0;
     for &Touched { place, sweeps } in touched {
@@ -299,7 +340,7 @@ fn respond<R: Real>(
             continue;
         };
         let (wind, mut pose) =
-            poses_before(field, &meadow.work, step_over_t, tile, &plant, slab, place);
+            poses_before(field, &meadow.work, &fading, tile, &plant, slab, place);
         let first = place as usize * segments;
         let surroundings = Place {
             ground: &field.ground,

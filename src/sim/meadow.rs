@@ -14,7 +14,7 @@ use crate::scene::assets::Assets;
 use crate::scene::{Action, Event, Scene, Wind};
 use crate::terrain::TerrainError;
 
-use super::parts::Parts;
+use super::parts::{Parts, Tested, takes_whole_bodies};
 use super::slab::slab_bytes;
 use super::work::{Mover, TileWork, Work};
 
@@ -27,6 +27,8 @@ pub struct Meadow {
     pub field: Field,
     pub bodies: Bodies,
     pub parts: Parts,
+    /// The true shape of every body, whatever the passes test.
+    pub truth: Parts,
     pub tiles: ActiveTiles,
     /// What the passes have to do in the current sub-step.
     pub work: Work,
@@ -97,6 +99,7 @@ impl Meadow {
             field,
             bodies,
             parts: Parts::default(),
+            truth: Parts::default(),
             tiles: ActiveTiles::new(slab_limit as u32),
             work: Work::default(),
             changes: Changes::default(),
@@ -170,8 +173,10 @@ impl Meadow {
     pub fn move_bodies(&mut self) {
         let dt = self.scene.solver.substep_s;
         self.bodies.step(self.time_s(), dt);
-        self.parts
-            .extend(self.bodies.shapes(), f64::from(self.scene.solver.skin_m));
+        let skin_m = f64::from(self.scene.solver.skin_m);
+        let whole = takes_whole_bodies(&self.scene.solver.method);
+        self.parts.extend(self.bodies.shapes(), skin_m, whole);
+        self.truth.extend(self.bodies.shapes(), 0.0, true);
     }
 
     /// Finds the tiles that bodies may touch and lists the work of this sub-step.
@@ -183,7 +188,8 @@ impl Meadow {
             .bodies
             .links()
             .iter()
-            .map(|link| Mover::new(link, &shapes[link.shape as usize], solver))
+            .zip(0..)
+            .map(|(link, number)| Mover::new(link, number, &shapes[link.shape as usize], solver))
             .collect();
         let mut near: BTreeMap<TileId, Vec<&Mover>> = BTreeMap::new();
         if !self.field.is_bare() {
@@ -224,8 +230,8 @@ impl Meadow {
             });
         }
         self.work = work;
-        for contact in self.work.contacts.iter().filter(|c| c.uses_cube) {
-            self.parts.want_cube(contact.part as usize);
+        for contact in &self.work.contacts {
+            self.parts.want(contact.part as usize, contact.tested);
         }
         self.count();
     }
@@ -260,7 +266,7 @@ impl Meadow {
     /// What each body resolved to, by name: how many of its parts are tested by cube and how many
     /// by closed form.
     pub fn colliders(&self) -> Vec<(String, u32, u32)> {
-        let resolution = self.scene.solver.cube_resolution;
+        let solver = &self.scene.solver;
         let mut found: BTreeMap<String, (u32, u32)> = BTreeMap::new();
         for link in self.bodies.links() {
             let Some(info) = self.bodies.info().find(|info| info.id == link.body) else {
@@ -268,7 +274,7 @@ impl Meadow {
             };
             let entry = found.entry(info.name.to_owned()).or_default();
             for part in self.parts.of_shape(link.shape) {
-                if self.parts.resolves_to_cube(part, link.collider, resolution) {
+                if self.parts.tested(part, link.collider, solver) == Tested::Cube {
                     entry.0 += 1;
                 } else {
                     entry.1 += 1;

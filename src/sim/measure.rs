@@ -14,13 +14,12 @@ use crate::field::{Bounds, Plant, TileId};
 use super::contact::body_of;
 use super::cpu::{poses, segment_length};
 use super::meadow::Meadow;
+use super::recover::Fading;
 use super::relax::largest_strain;
 use super::slab::Slab;
+use super::true_bodies::{ON_GROUND_M, TrueBodies};
+pub use super::true_bodies::Depth;
 use super::work::TileWork;
-
-/// A node this close to the ground lies on it, in metres: on a slope the last segment is laid down by
-/// the height at its end before it is turned.
-const ON_GROUND_M: f64 = 1e-3;
 
 /// Where the grass's state can be read.
 pub trait GrassState<R: Real> {
@@ -40,6 +39,8 @@ pub struct Snapshot {
     /// Depths of the nodes inside a true shape that were pushed in this sub-step, in metres; nodes
     /// pinched between body and ground not counted.
     pub depths_m: Vec<f64>,
+    /// The same for the middles of their segments, where neither end is inside.
+    pub middle_depths_m: Vec<f64>,
     /// The deepest of them relative to what its collider promises.
     pub worst: Depth,
     /// Movable nodes of plants pushed in this sub-step.
@@ -55,38 +56,37 @@ pub struct Snapshot {
     pub not_finite: u64,
 }
 
-/// A depth and what its collider promises: one texel of a depth cube, 1 mm for a closed form.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Depth {
-    pub depth_m: f64,
-    pub limit_m: f64,
-}
-
-impl Default for Depth {
-    fn default() -> Self {
-        Self {
-            depth_m: 0.0,
-            limit_m: ANALYTIC_LIMIT_M,
-        }
-    }
-}
-
-/// Depth an analytic collider may leave, in metres.
-const ANALYTIC_LIMIT_M: f64 = 1e-3;
-
 /// One plant of an active tile as it stands.
 #[derive(Clone, Debug)]
 pub struct Standing<R> {
+    /// Number of the plant within its tile.
+    pub place: u32,
     pub plant: Plant,
     /// World place of the anchor that `nodes` and `wind` are relative to.
     pub origin: [f64; 3],
     pub wind: Vec<Vec3<R>>,
     pub nodes: Vec<Vec3<R>>,
+    /// Offsets of the movable nodes from the wind pose at the last contact.
+    pub offsets: Vec<Vec3<R>>,
     /// Tick of the last contact, 0 for never.
     pub touched_at: u32,
 }
 
 impl<R: Real> Standing<R> {
+    /// The same plant in `f64`.
+    pub fn widened(self) -> Standing<f64> {
+        let wide = |nodes: Vec<Vec3<R>>| nodes.iter().map(|n| Vec3::of(n.to_f64())).collect();
+        Standing {
+            place: self.place,
+            plant: self.plant,
+            origin: self.origin,
+            wind: wide(self.wind),
+            nodes: wide(self.nodes),
+            offsets: wide(self.offsets),
+            touched_at: self.touched_at,
+        }
+    }
+
     /// World x and z of the root.
     pub fn root_in_world(&self) -> [f64; 2] {
         let [x, _, z] = self.plant.root_in_anchor.map(f64::from);
@@ -119,14 +119,16 @@ fn stand<R: Real>(
 ) -> Option<Standing<R>> {
     let field = &meadow.field;
     let segments = field.table.segments as usize;
-    let step_over_t = R::of(meadow.step_over_t());
+    let fading = Fading::new(meadow);
     let plant = field.plant(&tile.anchor, tile.tile, place)?;
-    let (wind, nodes) = poses(field, &meadow.work, step_over_t, tile, &plant, slab, place);
+    let (wind, nodes) = poses(field, &meadow.work, &fading, tile, &plant, slab, place);
     Some(Standing {
+        place,
         plant,
         origin: field.grid.anchor_in_world(&tile.anchor, &field.ground),
         wind: wind[..=segments].to_vec(),
         nodes: nodes[..=segments].to_vec(),
+        offsets: slab.offsets[place as usize * segments..][..segments].to_vec(),
         touched_at: slab.touched_at[place as usize],
     })
 }
@@ -144,21 +146,22 @@ pub fn snapshot<R: Real>(meadow: &Meadow, state: &(impl GrassState<R> + Sync)) -
     let tiles = &meadow.work.tiles;
     let parts: Vec<Snapshot> = tiles
         .par_iter()
-        .filter_map(|tile| Some(of_tile(meadow, tile, state.slab(tile.slab)?)))
+        .filter_map(|tile| Some(measured(meadow, tile, state.slab(tile.slab)?)))
         .collect();
     parts
         .into_iter()
         .fold(Snapshot::default(), Snapshot::joined)
 }
 
-fn of_tile<R: Real>(meadow: &Meadow, tile: &TileWork, slab: &Slab<R>) -> Snapshot {
+fn measured<R: Real>(meadow: &Meadow, tile: &TileWork, slab: &Slab<R>) -> Snapshot {
     let mut snapshot = Snapshot::default();
+    let bodies = TrueBodies::near(meadow, tile);
     for place in 0..meadow.field.grid.plants_per_tile() {
         if slab.touched_at[place as usize] == 0 {
             continue;
         }
         if let Some(plant) = stand(meadow, tile, slab, place) {
-            snapshot.add_plant(meadow, tile, &plant);
+            snapshot.add_plant(meadow, tile, &bodies, &plant);
         }
     }
     snapshot
@@ -167,6 +170,7 @@ fn of_tile<R: Real>(meadow: &Meadow, tile: &TileWork, slab: &Slab<R>) -> Snapsho
 impl Snapshot {
     fn joined(mut self, other: Self) -> Self {
         self.depths_m.extend(other.depths_m);
+        self.middle_depths_m.extend(other.middle_depths_m);
         self.worst = self.worst.worse(other.worst);
         self.pushed_nodes += other.pushed_nodes;
         self.pinched += other.pinched;
@@ -177,7 +181,13 @@ impl Snapshot {
         self
     }
 
-    fn add_plant<R: Real>(&mut self, meadow: &Meadow, tile: &TileWork, plant: &Standing<R>) {
+    fn add_plant<R: Real>(
+        &mut self,
+        meadow: &Meadow,
+        tile: &TileWork,
+        bodies: &TrueBodies,
+        plant: &Standing<R>,
+    ) {
         if !plant.nodes.iter().all(|node| node.is_finite()) {
             self.not_finite += 1;
             return;
@@ -192,75 +202,79 @@ impl Snapshot {
             self.max_offset_m = self.max_offset_m.max((*node - *wind).length().to_f64());
         }
         if plant.touched_at == meadow.work.now {
-            self.add_pushed(meadow, tile, plant);
+            self.add_pushed(meadow, tile, bodies, plant);
         }
     }
 
-    /// Depth of a pushed plant's nodes in the parts near its tile, by their true shapes.
-    fn add_pushed<R: Real>(&mut self, meadow: &Meadow, tile: &TileWork, plant: &Standing<R>) {
+    /// Depth of a pushed plant's nodes in the bodies near its tile, by their true shapes.
+    fn add_pushed<R: Real>(
+        &mut self,
+        meadow: &Meadow,
+        tile: &TileWork,
+        bodies: &TrueBodies,
+        plant: &Standing<R>,
+    ) {
         let mut nearest = f64::NEG_INFINITY;
-        for node in &plant.nodes[1..] {
-            let p = Vec3::<f64>::of(node.to_f64());
+        let nodes = plant.nodes.iter().map(|node| Vec3::<f64>::of(node.to_f64()));
+        let nodes: Vec<Vec3<f64>> = nodes.collect();
+        let mut below_inside = false;
+        for (&from, &p) in nodes.iter().zip(&nodes[1..]) {
             self.pushed_nodes += 1;
-            let deepest = deepest_in(meadow, tile, p);
-            let Some(found) = deepest else {
-                continue;
+            let Some(found) = bodies.deepest(p) else {
+                return;
             };
             nearest = nearest.max(found.depth_m);
-            if found.depth_m <= 0.0 {
-                continue;
-            }
             let ground: f64 = ground_in_anchor(&meadow.field.ground, &tile.anchor, p.x, p.z);
-            let mut excess = found.depth_m;
-            if p.y <= ground + ON_GROUND_M {
-                // A pinch: the ground wins, so what the body and the ground share there is no fault,
-                // nor is the height by which the node lies above it.
-                let on_ground = Vec3::new(p.x, ground, p.z);
-                let shared = deepest_in(meadow, tile, on_ground).map_or(0.0, |d| d.depth_m);
-                excess -= shared.max(0.0) + (p.y - ground).max(0.0);
-                self.pinched += 1;
+            let excess = bodies.beyond_pinch(p, found, ground);
+            self.pinched += u64::from(found.depth_m > 0.0 && p.y <= ground + ON_GROUND_M);
+            if excess.depth_m > 0.0 {
+                self.depths_m.push(excess.depth_m);
+                self.worst = self.worst.worse(excess);
             }
-            if excess > 0.0 {
-                let found = Depth {
-                    depth_m: excess,
-                    ..found
-                };
-                self.depths_m.push(found.depth_m);
-                self.worst = self.worst.worse(found);
+            let is_inside = found.depth_m > 0.0;
+            if !is_inside && !below_inside {
+                self.add_middle(meadow, tile, bodies, (from + p) * 0.5);
             }
+            below_inside = is_inside;
         }
         if nearest.is_finite() {
             self.over_push_m = self.over_push_m.max(-nearest);
         }
     }
-}
 
-impl Depth {
-    fn worse(self, other: Self) -> Self {
-        if other.depth_m / other.limit_m > self.depth_m / self.limit_m {
-            other
-        } else {
-            self
+    fn add_middle(&mut self, meadow: &Meadow, tile: &TileWork, bodies: &TrueBodies, p: Vec3<f64>) {
+        if let Some(found) = bodies.deepest(p).filter(|found| found.depth_m > 0.0) {
+            let ground: f64 = ground_in_anchor(&meadow.field.ground, &tile.anchor, p.x, p.z);
+            let excess = bodies.beyond_pinch(p, found, ground);
+            if excess.depth_m > 0.0 {
+                self.middle_depths_m.push(excess.depth_m);
+            }
         }
     }
 }
 
-/// The part a point is deepest in among those near a tile, by true shapes; a negative depth is
-/// how far off the nearest one is.
-fn deepest_in(meadow: &Meadow, tile: &TileWork, p: Vec3<f64>) -> Option<Depth> {
-    let contacts = &meadow.work.contacts[tile.contacts.start as usize..tile.contacts.end as usize];
-    let depths = contacts.iter().map(|contact| {
-        let part = &meadow.parts.parts[contact.part as usize];
-        Depth {
-            depth_m: part.solid.depth(contact.to.inverse_point(p)),
-            limit_m: if contact.uses_cube {
-                part.texel_m(meadow.scene.solver.cube_resolution)
-            } else {
-                ANALYTIC_LIMIT_M
-            },
+/// Every plant of a tile as it stands, awake or not, in the order of places.
+pub fn of_tile<R: Real>(
+    meadow: &Meadow,
+    state: &impl GrassState<R>,
+    tile: TileId,
+) -> Vec<Standing<R>> {
+    let field = &meadow.field;
+    let plants = 0..field.grid.plants_per_tile();
+    let active = meadow.tiles.get(tile);
+    let work = TileWork {
+        tile,
+        slab: active.map_or(0, |a| a.slab),
+        anchor: field.grid.anchor_of(tile, &field.ground),
+        contacts: 0..0,
+    };
+    match active.and_then(|a| state.slab(a.slab)) {
+        Some(slab) => standing(meadow, &work, slab),
+        None => {
+            let segments = field.table.segments as usize;
+            standing(meadow, &work, &Slab::new(plants.len(), segments))
         }
-    });
-    depths.reduce(|a, b| if b.depth_m > a.depth_m { b } else { a })
+    }
 }
 
 /// Plants rooted near a place on the ground, resting ones included.
@@ -271,8 +285,6 @@ pub fn near<R: Real>(
     within_m: f64,
 ) -> Vec<Standing<R>> {
     let field = &meadow.field;
-    let segments = field.table.segments as usize;
-    let untouched = Slab::new(field.grid.plants_per_tile() as usize, segments);
     let disc = Bounds {
         low: [place_m[0] - within_m, f64::MIN, place_m[1] - within_m],
         high: [place_m[0] + within_m, f64::MAX, place_m[1] + within_m],
@@ -282,26 +294,14 @@ pub fn near<R: Real>(
     field
         .octree
         .query(grid, ground, &disc, 0.0, |tile| tiles.push(tile));
-    let mut found = Vec::new();
-    for tile in tiles {
-        let active = meadow.tiles.get(tile);
-        let slab = active
-            .and_then(|a| state.slab(a.slab))
-            .unwrap_or(&untouched);
-        let work = TileWork {
-            tile,
-            slab: active.map_or(0, |a| a.slab),
-            anchor: grid.anchor_of(tile, ground),
-            contacts: 0..0,
-        };
-        let plants = 0..grid.plants_per_tile();
-        let plants = plants.filter_map(|place| stand(meadow, &work, slab, place));
-        found.extend(plants.filter(|plant| {
-            let [x, z] = plant.root_in_world();
-            (x - place_m[0]).powi(2) + (z - place_m[1]).powi(2) <= within_m * within_m
-        }));
-    }
-    found
+    let plants = tiles
+        .into_iter()
+        .flat_map(|tile| of_tile(meadow, state, tile));
+    let is_near = |plant: &Standing<R>| {
+        let [x, z] = plant.root_in_world();
+        (x - place_m[0]).powi(2) + (z - place_m[1]).powi(2) <= within_m * within_m
+    };
+    plants.filter(is_near).collect()
 }
 
 /// Plants touched within the last `ticks` ticks whose last contact took a node at least `far_m`

@@ -8,10 +8,13 @@ pub mod meadow;
 pub mod measure;
 pub mod parts;
 pub mod recover;
+pub mod reference;
 pub mod relax;
 pub mod slab;
 pub mod solid;
 pub mod tick;
+pub mod true_bodies;
+pub mod voxel_field;
 pub mod work;
 
 pub use cpu::Grass;

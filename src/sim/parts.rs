@@ -1,13 +1,25 @@
-//! The convex parts that the grass collides with, made once per rigid shape.
+//! The parts that the grass collides with, made once per rigid shape: its convex parts, or the
+//! whole body where a method wants that.
 
 use crate::base::Pose;
-use crate::bodies::{ConvexPart, RigidShape};
-use crate::scene::Collider;
+use crate::bodies::RigidShape;
+use crate::scene::method::{Collide, CubePer};
+use crate::scene::{Collider, Method, Solver};
 
 use super::depth_cube::DepthCube;
 use super::solid::Solid;
+use super::voxel_field::VoxelField;
 
-/// What the passes know of one convex part.
+/// What a part's vertices are tested against.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Tested {
+    /// The closed form of its solid.
+    Closed,
+    Cube,
+    Voxels,
+}
+
+/// What the passes know of one part.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// The true solid, in the part's own space.
@@ -20,7 +32,10 @@ pub struct Part {
     pub radius_m: f64,
     /// Drawn when a body first needs it.
     pub cube: Option<DepthCube>,
+    /// Sampled when a body first needs it.
+    pub voxels: Option<VoxelField>,
     wants_cube: bool,
+    wants_voxels: bool,
 }
 
 impl Part {
@@ -43,15 +58,27 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// Takes in the shapes that are new since the last call.
-    pub fn extend(&mut self, shapes: &[RigidShape], skin_m: f64) {
+    /// Takes in the shapes that are new since the last call, part by part or each as a whole.
+    pub fn extend(&mut self, shapes: &[RigidShape], skin_m: f64, whole: bool) {
         for shape in &shapes[self.half_thickness_m.len().min(shapes.len())..] {
             self.first.push(self.parts.len() as u32);
             self.half_thickness_m.push(shape.half_thickness_m);
             self.radius_m.push(shape.bounding_radius_m);
-            self.parts
-                .extend(shape.parts.iter().map(|part| new_part(part, skin_m)));
+            if whole {
+                let solid = Solid::of_body(shape);
+                self.parts.push(new_part(solid, Pose::IDENTITY, skin_m));
+            } else {
+                let parts = shape.parts.iter();
+                self.parts.extend(
+                    parts.map(|part| new_part(Solid::of_part(&part.solid), part.pose, skin_m)),
+                );
+            }
         }
+    }
+
+    /// The only part of a shape that was taken in as a whole.
+    pub fn whole(&self, shape: u32) -> Option<&Part> {
+        self.parts.get(*self.first.get(shape as usize)? as usize)
     }
 
     /// Indices of the parts of a shape.
@@ -68,22 +95,33 @@ impl Parts {
         self.radius_m[shape as usize]
     }
 
-    /// True where a part is tested with its depth cube: as the body says, or for `auto` where
-    /// half its thickness is at least two texels.
-    pub fn resolves_to_cube(&self, part: usize, collider: Collider, resolution: u32) -> bool {
-        match collider {
-            Collider::Cube => true,
-            Collider::Analytic => false,
-            Collider::Auto => {
+    /// What a part is tested against: what the method or the body says; for `auto` its depth cube
+    /// where half its thickness is at least two texels.
+    pub fn tested(&self, part: usize, collider: Collider, solver: &Solver) -> Tested {
+        match (solver.method.collide, collider) {
+            (Collide::Voxels, _) => Tested::Voxels,
+            (Collide::Exact | Collide::Analytic, _) => Tested::Closed,
+            (Collide::Cube, _) | (Collide::AsBodies, Collider::Cube) => Tested::Cube,
+            (Collide::AsBodies, Collider::Analytic) => Tested::Closed,
+            (Collide::AsBodies, Collider::Auto) => {
                 let part = &self.parts[part];
-                thinnest(part) >= 2.0 * part.texel_m(resolution)
+                if thinnest(part) >= 2.0 * part.texel_m(solver.cube_resolution) {
+                    Tested::Cube
+                } else {
+                    Tested::Closed
+                }
             }
         }
     }
 
-    /// Asks for a part's depth cube.
-    pub fn want_cube(&mut self, part: usize) {
-        self.parts[part].wants_cube = true;
+    /// Asks for what a part's vertices are tested against.
+    pub fn want(&mut self, part: usize, tested: Tested) {
+        let part = &mut self.parts[part];
+        match tested {
+            Tested::Closed => {}
+            Tested::Cube => part.wants_cube = true,
+            Tested::Voxels => part.wants_voxels = true,
+        }
     }
 
     /// Parts that a cube was asked for.
@@ -95,6 +133,13 @@ impl Parts {
     pub fn undrawn(&self) -> Vec<usize> {
         self.wanted()
             .filter(|&n| self.parts[n].cube.is_none())
+            .collect()
+    }
+
+    /// Parts that need a voxel field and have none yet.
+    pub fn unsampled(&self) -> Vec<usize> {
+        (0..self.parts.len())
+            .filter(|&n| self.parts[n].wants_voxels && self.parts[n].voxels.is_none())
             .collect()
     }
 
@@ -112,8 +157,12 @@ impl Parts {
     }
 }
 
-fn new_part(part: &ConvexPart, skin_m: f64) -> Part {
-    let solid = Solid::<f64>::of_part(&part.solid);
+/// True where a method takes bodies as a whole instead of part by part.
+pub fn takes_whole_bodies(method: &Method) -> bool {
+    method.collide == Collide::Exact || method.cube_per == CubePer::Body
+}
+
+fn new_part(solid: Solid<f64>, pose: Pose<f64>, skin_m: f64) -> Part {
     let grown: Solid<f32> = solid.grown_by(skin_m);
     let [low, high] = grown.bounds();
     let corner = [
@@ -125,10 +174,12 @@ fn new_part(part: &ConvexPart, skin_m: f64) -> Part {
     Part {
         solid,
         grown,
-        pose: part.pose,
+        pose,
         radius_m: corner.iter().map(|c| c * c).sum::<f64>().sqrt(),
         cube: None,
+        voxels: None,
         wants_cube: false,
+        wants_voxels: false,
     }
 }
 

@@ -15,6 +15,7 @@
 use crate::base::{Pose, Real, Vec3, vec3};
 use crate::field::grid::ground_in_anchor;
 use crate::field::{Anchor, Nodes};
+use crate::scene::method::Collide;
 use crate::terrain::HeightGrid;
 
 use super::contact::Touch;
@@ -27,6 +28,8 @@ pub struct RelaxSettings<R> {
     pub fewest_rounds: u32,
     pub most_rounds: u32,
     pub strain_limit: R,
+    /// Rounds go on, up to the most, while one still moved a node out of a body.
+    pub until_clear: bool,
 }
 
 impl<R: Real> RelaxSettings<R> {
@@ -36,6 +39,7 @@ impl<R: Real> RelaxSettings<R> {
             fewest_rounds: solver.rounds[0],
             most_rounds: solver.rounds[1],
             strain_limit: R::of_f32(solver.strain_limit),
+            until_clear: solver.method.collide == Collide::Exact,
         }
     }
 }
@@ -94,7 +98,8 @@ pub fn respond<R: Real>(
             keep_above_ground(nodes, place);
             rounds_used = rounds_used.max(round);
             let strain = largest_strain(nodes, place.segments, place.length);
-            if round >= settings.fewest_rounds && strain <= settings.strain_limit {
+            let clear = pushed == 0 || !settings.until_clear;
+            if round >= settings.fewest_rounds && strain <= settings.strain_limit && clear {
                 break;
             }
         }
@@ -161,7 +166,7 @@ impl<'a, R: Real> Bodies<'a, R> {
 }
 
 /// Some unit vector at right angles to a unit vector.
-fn across<R: Real>(n: Vec3<R>) -> Vec3<R> {
+pub(super) fn across<R: Real>(n: Vec3<R>) -> Vec3<R> {
     let axis = if n.x.abs() < R::of(0.5) {
         vec3(R::ONE, R::ZERO, R::ZERO)
     } else {

@@ -1,20 +1,27 @@
-//! The true shape of a convex part: how deep a point is inside, and the way out.
+//! The true shape of a part: how deep a point is inside, and the way out.
 //!
 //! Closed forms for ball, box, capsule and cylinder; for a convex polyhedron its planes. The
 //! depth is the distance to the nearest *feature* (a ball's surface, one of a box's faces, a
 //! cylinder's side or one of its caps, a plane). Near the medial axis two features are equally
 //! near, so the feature of the last sub-step is kept until another is clearly nearer
-//! (hysteresis against flipping). WGSL twin: `shaders/shared/solid.wgsl`.
+//! (hysteresis against flipping). WGSL twin: `shaders/shared/solid.wgsl`, for the convex ones: whole
+//! bodies (`whole.rs`) are for the reference, for measures and for one cube per body.
+
+mod whole;
+
+use std::sync::Arc;
 
 use crate::base::{Real, Vec3, vec3};
-use crate::bodies;
+use crate::bodies::{self, TrueMesh};
+
+pub use whole::Member;
 
 /// A feature is kept until another is nearer by this factor.
 pub const KEEP_FACE: f64 = 0.9;
 /// No feature is remembered.
 pub const NO_FACE: u32 = u32::MAX;
 
-/// A convex solid about its own origin, in the kernel's float. Lengths in metres.
+/// A solid about its own origin, in the kernel's float. Lengths in metres.
 #[derive(Clone, Debug)]
 pub enum Solid<R> {
     Ball {
@@ -37,6 +44,10 @@ pub enum Solid<R> {
         low: Vec3<R>,
         high: Vec3<R>,
     },
+    /// Everything that is in one of several convex solids.
+    Union(Vec<Member<R>>),
+    /// A closed triangle mesh, grown by a skin.
+    Mesh { mesh: Arc<TrueMesh>, skin: R },
 }
 
 /// Points with normal·p ≤ offset are inside.
@@ -156,6 +167,13 @@ impl<R: Real> Solid<R> {
                 low: Vec3::of(low.to_f64().map(|x| x - skin_m)),
                 high: Vec3::of(high.to_f64().map(|x| x + skin_m)),
             },
+            Self::Union(members) => {
+                Solid::Union(members.iter().map(|m| m.grown_by(skin_m)).collect())
+            }
+            Self::Mesh { mesh, skin: own } => Solid::Mesh {
+                mesh: Arc::clone(mesh),
+                skin: skin(*own),
+            },
         }
     }
 
@@ -167,6 +185,12 @@ impl<R: Real> Solid<R> {
             Self::Capsule { radius, half } => vec3(radius, half + radius, radius),
             Self::Cylinder { radius, half } => vec3(radius, half, radius),
             Self::Convex { low, high, .. } => return [low, high],
+            Self::Union(ref members) => return whole::bounds(members),
+            Self::Mesh { ref mesh, skin } => {
+                let [low, high] = mesh.bounds_m.map(Vec3::of);
+                let skin = vec3(skin, skin, skin);
+                return [low - skin, high + skin];
+            }
         };
         [-high, high]
     }
@@ -187,38 +211,82 @@ impl<R: Real> Solid<R> {
             Self::Convex { planes, .. } => planes.iter().fold(R::of(1e30), |least, plane| {
                 least.min(plane.offset - plane.normal.dot(p))
             }),
+            Self::Union(members) => whole::depth(members, p),
+            Self::Mesh { mesh, skin } => whole::mesh_depth(mesh, p) + *skin,
         }
     }
 
     /// The way out for a point inside, or `None` outside. `kept` is the feature of the last
     /// sub-step or [`NO_FACE`].
     pub fn exit(&self, p: Vec3<R>, kept: u32, reach: &Reach<R>) -> Option<Exit<R>> {
-        let cost = |depth, normal| reach.cost(p, depth, normal);
-        let sideways = vec3(R::ONE, R::ZERO, R::ZERO);
-        let single = |out: Vec3<R>, radius: R| {
-            let depth = radius - out.length();
-            (depth > R::ZERO).then(|| Exit {
-                depth,
-                normal: out.unit_or(sideways),
-                face: 0,
-            })
+        match self {
+            Self::Union(members) => whole::exit(members, p, kept, reach),
+            Self::Mesh { mesh, skin } => whole::mesh_exit(mesh, p, *skin),
+            _ => nearest(
+                self.feature_count(),
+                kept,
+                |depth, normal| reach.cost(p, depth, normal),
+                |face| self.feature(p, face),
+            ),
+        }
+    }
+
+    /// Features of a convex solid that a way out may lead through.
+    fn feature_count(&self) -> u32 {
+        match self {
+            Self::Ball { .. } | Self::Capsule { .. } => 1,
+            Self::Box { .. } => 6,
+            Self::Cylinder { .. } => 3,
+            Self::Convex { planes, .. } => planes.len() as u32,
+            Self::Union(_) | Self::Mesh { .. } => 0,
+        }
+    }
+
+    /// Depth of a point behind a feature of a convex solid, and the feature's outward normal.
+    fn feature(&self, p: Vec3<R>, face: u32) -> (R, Vec3<R>) {
+        let round = |out: Vec3<R>, radius: R| {
+            let sideways = vec3(R::ONE, R::ZERO, R::ZERO);
+            (radius - out.length(), out.unit_or(sideways))
         };
         match self {
-            Self::Ball { radius } => single(p, *radius),
-            Self::Capsule { radius, half } => single(from_axis(p, *half), *radius),
-            Self::Box { half } => nearest(6, kept, cost, |face| box_face(p, *half, face)),
-            Self::Cylinder { radius, half } => nearest(3, kept, cost, |face| match face {
-                0 => {
-                    let out = across(p);
-                    (*radius - out.length(), out.unit_or(sideways))
-                }
+            Self::Ball { radius } => round(p, *radius),
+            Self::Capsule { radius, half } => round(from_axis(p, *half), *radius),
+            Self::Box { half } => box_face(p, *half, face),
+            Self::Cylinder { radius, half } => match face {
+                0 => round(across(p), *radius),
                 1 => (*half - p.y, Vec3::UP),
                 _ => (*half + p.y, -Vec3::UP),
-            }),
-            Self::Convex { planes, .. } => nearest(planes.len() as u32, kept, cost, |face| {
+            },
+            Self::Convex { planes, .. } => {
                 let plane = planes[face as usize];
                 (plane.offset - plane.normal.dot(p), plane.normal)
-            }),
+            }
+            Self::Union(_) | Self::Mesh { .. } => (R::ZERO, Vec3::UP),
+        }
+    }
+
+    /// Distance of a point outside to the surface, 0 or less inside. Exact but for a convex
+    /// polyhedron's edges and corners, where it is at most the distance.
+    pub fn gap(&self, p: Vec3<R>) -> R {
+        let beyond = |x: R, y: R, z: R| {
+            let deepest = x.max(y).max(z);
+            let out = vec3(x.max(R::ZERO), y.max(R::ZERO), z.max(R::ZERO));
+            if deepest > R::ZERO {
+                out.length()
+            } else {
+                deepest
+            }
+        };
+        match self {
+            Self::Box { half } => {
+                beyond(p.x.abs() - half.x, p.y.abs() - half.y, p.z.abs() - half.z)
+            }
+            Self::Cylinder { radius, half } => {
+                let side = across(p).length() - *radius;
+                beyond(side, p.y.abs() - *half, side.min(R::ZERO))
+            }
+            Self::Union(members) => whole::gap(members, p),
+            _ => -self.depth(p),
         }
     }
 }
@@ -305,104 +373,4 @@ fn across<R: Real>(p: Vec3<R>) -> Vec3<R> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn solids() -> Vec<Solid<f64>> {
-        let s = 0.5_f64.sqrt();
-        let plane = |x, y, z| Plane {
-            normal: vec3(x, y, z),
-            offset: 0.3,
-        };
-        vec![
-            Solid::Ball { radius: 0.4 },
-            Solid::Box {
-                half: vec3(0.3, 0.2, 0.4),
-            },
-            Solid::Capsule {
-                radius: 0.2,
-                half: 0.3,
-            },
-            Solid::Cylinder {
-                radius: 0.3,
-                half: 0.2,
-            },
-            Solid::Convex {
-                planes: vec![
-                    plane(s, s, 0.0),
-                    plane(-s, s, 0.0),
-                    plane(0.0, -1.0, 0.0),
-                    plane(0.0, 0.0, 1.0),
-                    plane(0.0, 0.0, -1.0),
-                ],
-                low: vec3(-1.0, -0.3, -0.3),
-                high: vec3(1.0, 0.5, 0.3),
-            },
-        ]
-    }
-
-    #[test]
-    fn the_way_out_ends_on_the_surface() {
-        for solid in solids() {
-            let mut inside = 0;
-            for k in 0..4000_u32 {
-                let word = |salt: u32| crate::base::philox::philox2x32([k, salt], 3, 7)[0];
-                let at = |salt: u32| f64::from(crate::base::philox::unit(word(salt))) - 0.5;
-                let p = vec3(at(1), at(2), at(3));
-                let exit = solid.exit(p, NO_FACE, &Reach::anywhere());
-                assert_eq!(exit.is_some(), solid.depth(p) > 0.0, "{solid:?} {p:?}");
-                if let Some(exit) = exit {
-                    inside += 1;
-                    assert!((exit.depth - solid.depth(p)).abs() < 1e-12);
-                    let out = p + exit.normal * exit.depth;
-                    assert!(solid.depth(out).abs() < 1e-12, "{solid:?} {p:?}");
-                }
-            }
-            assert!(inside > 100, "{solid:?}: {inside}");
-        }
-    }
-
-    #[test]
-    fn centres_and_axes_have_a_finite_way_out() {
-        for solid in solids() {
-            for p in [Vec3::ZERO, vec3(0.0, 0.1, 0.0)] {
-                let exit = solid.exit(p, NO_FACE, &Reach::anywhere()).expect("inside");
-                assert!(exit.normal.is_finite() && (exit.normal.length() - 1.0).abs() < 1e-12);
-            }
-        }
-    }
-
-    #[test]
-    fn a_way_out_must_be_in_the_segments_reach() {
-        let plank = Solid::Box {
-            half: vec3(1.0, 0.05, 0.2),
-        };
-        let face = |length: f64| {
-            let from = vec3(0.0, -0.05, 0.1);
-            let reach = Reach { from, length };
-            plank
-                .exit(vec3(0.0, 0.0, 0.17), NO_FACE, &reach)
-                .map(|e| e.face)
-        };
-        assert_eq!(face(0.12), Some(4), "3 cm to the side");
-        assert_eq!(
-            face(0.09),
-            Some(3),
-            "the side is 10 cm from the lower node, the bottom near"
-        );
-    }
-
-    #[test]
-    fn a_face_is_kept_until_another_is_a_tenth_nearer() {
-        let cube = Solid::Box {
-            half: vec3(1.0, 1.0, 1.0),
-        };
-        let face = |x: f64, kept| {
-            cube.exit(vec3(x, 0.5, 0.0), kept, &Reach::anywhere())
-                .map(|e| e.face)
-        };
-        assert_eq!(face(0.51, NO_FACE), Some(0));
-        assert_eq!(face(0.51, 2), Some(2));
-        assert_eq!(face(0.56, 2), Some(0));
-    }
-}
+mod tests;

@@ -5,7 +5,7 @@ use crate::bodies::{Link, RigidShape};
 use crate::field::{Anchor, Bounds, Field, TileId, WindNow};
 use crate::scene::Solver;
 
-use super::parts::Parts;
+use super::parts::{Parts, Tested};
 
 /// The work of one sub-step.
 #[derive(Clone, Debug, Default)]
@@ -41,10 +41,13 @@ pub struct Contact {
     pub body: u32,
     /// Number of the contact's part within its body, to tell its faces from another part's.
     pub part_in_body: u32,
-    /// Tested with the depth cube instead of the closed form.
-    pub uses_cube: bool,
-    /// Pieces the sub-step is cut into for this body: it travels at most half its half
-    /// thickness in each.
+    pub tested: Tested,
+    /// Index into [`Bodies::links`](crate::bodies::Bodies::links).
+    pub link: u32,
+    /// Index into [`Bodies::shapes`](crate::bodies::Bodies::shapes).
+    pub shape: u32,
+    /// Pieces the sub-step is cut into for this body: it travels at most a share of its half
+    /// thickness in each, half of it unless the method says otherwise.
     pub sweeps: u32,
     /// `anchor_from_part` at the start and the end of the sub-step.
     pub from: Pose<f64>,
@@ -57,6 +60,8 @@ pub struct Contact {
 #[derive(Clone, Debug)]
 pub struct Mover {
     pub link: Link,
+    /// Place of the link in the list of links.
+    pub number: u32,
     /// Bounds swept from start to end.
     pub bounds: Bounds,
     pub sweeps: u32,
@@ -81,7 +86,7 @@ fn travel_m(link: &Link, radius_m: f64) -> f64 {
 }
 
 impl Mover {
-    pub fn new(link: &Link, shape: &RigidShape, solver: &Solver) -> Self {
+    pub fn new(link: &Link, number: u32, shape: &RigidShape, solver: &Solver) -> Self {
         let skin = f64::from(solver.skin_m);
         let bounds_at = |pose: Pose<f64>| {
             let boxes = shape
@@ -94,12 +99,13 @@ impl Mover {
             })
         };
         let swept = bounds_at(link.from).union(bounds_at(link.to));
-        let step = 0.5 * shape.half_thickness_m;
+        let step = solver.method.sweep_share * shape.half_thickness_m;
         let wished = (travel_m(link, shape.bounding_radius_m) / step)
             .ceil()
             .max(1.0);
         Self {
             link: link.clone(),
+            number,
             bounds: swept.grown(skin + bulge_m(link, shape.bounding_radius_m)),
             sweeps: wished.min(f64::from(solver.max_sweeps)) as u32,
             capped: wished > f64::from(solver.max_sweeps),
@@ -123,6 +129,17 @@ fn turned_box(world_from_body: Pose<f64>, [low, high]: [[f64; 3]; 2]) -> Bounds 
         bounds = Some(bounds.map_or(here, |b| b.union(here)));
     }
     bounds.unwrap_or(Bounds { low, high })
+}
+
+impl Contact {
+    /// `anchor_from_body` at the end of the sub-step.
+    pub fn anchor_from_body(&self, parts: &Parts) -> Pose<f64> {
+        let part_from_body = parts.parts[self.part as usize].pose.inverse();
+        Pose {
+            turn: part_from_body.turn.then(self.to.turn),
+            place: self.to.point(part_from_body.place),
+        }
+    }
 }
 
 impl Work {
@@ -152,7 +169,9 @@ impl Work {
                     part: part as u32,
                     body: link.body,
                     part_in_body: (part - range.start) as u32,
-                    uses_cube: parts.resolves_to_cube(part, link.collider, solver.cube_resolution),
+                    tested: parts.tested(part, link.collider, solver),
+                    link: mover.number,
+                    shape: link.shape,
                     sweeps: mover.sweeps,
                     from: local(link.from),
                     to: local(link.to),

@@ -164,7 +164,7 @@ fn drawn(device: &Device) -> Result<(Meadow, GpuGrass), Failed> {
     let mut gpu = GpuGrass::new(&device.gpu, &device.kernels, &mut meadow)?;
     meadow.move_bodies();
     for part in 0..meadow.parts.parts.len() {
-        meadow.parts.want_cube(part);
+        meadow.parts.want(part, sward::sim::parts::Tested::Cube);
     }
     gpu.draw_depth_cubes(&meadow)?;
     gpu.submit();

@@ -205,7 +205,7 @@ fn compare_drawn(
 ) -> Result<(), Failed> {
     let field = &meadow.field;
     let segments = field.table.segments as usize;
-    let step_over_t = meadow.step_over_t() as f32;
+    let fading = sward::sim::recover::Fading::<f32>::new(&meadow);
     let plants = field.grid.plants_per_tile();
     let per_tile = plants as usize * (segments + 1);
     for (tile, rows) in meadow.work.tiles.iter().zip(rows.chunks_exact(per_tile)) {
@@ -218,7 +218,7 @@ fn compare_drawn(
             let Some(plant) = plant else {
                 continue;
             };
-            let (_, nodes) = poses(field, &meadow.work, step_over_t, tile, &plant, slab, place);
+            let (_, nodes) = poses(field, &meadow.work, &fading, tile, &plant, slab, place);
             for (j, (row, node)) in rows.iter().zip(&nodes).enumerate() {
                 difference.add(distance([row[0], row[1], row[2]], node.to_f32()), || {
                     format!(

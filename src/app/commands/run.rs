@@ -5,13 +5,15 @@ use std::io::{self, BufWriter, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Args, ValueEnum};
 
 use super::scene_file;
 use crate::app::device::EngineArguments;
 use crate::app::failure::exit_of_run;
 use crate::app::progress::Progress;
 use crate::app::{Failure, complain};
+use crate::run::methods::{self, METHODS, NamedMethod};
 use crate::run::report::{Adapter, Report, Scenario};
 use crate::run::trace::Trace;
 use crate::run::{Device, Exit, Frame, RunError, RunOptions, junit, run_scene, table};
@@ -39,6 +41,12 @@ pub struct Arguments {
     /// Seed of the grass instead of the scene's
     #[arg(long, value_name = "N")]
     seed: Option<u32>,
+    /// Settings of the solver by name, instead of the scene's
+    #[arg(long, value_name = "NAME", value_parser = method_names())]
+    method: Option<String>,
+    /// Also run this engine beside, and tell how far the poses differ
+    #[arg(long, value_enum, value_name = "ENGINE")]
+    against: Option<Truth>,
     /// Another folder in which assets are looked up; may be repeated
     #[arg(long, value_name = "DIR")]
     assets: Vec<PathBuf>,
@@ -54,6 +62,17 @@ pub struct Arguments {
     /// Also write the report as JUnit XML
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
+}
+
+/// What a run can be compared with.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Truth {
+    Reference,
+}
+
+fn method_names() -> PossibleValuesParser {
+    let value = |method: &NamedMethod| PossibleValue::new(method.name).help(method.what);
+    PossibleValuesParser::new(METHODS.iter().map(value))
 }
 
 /// Runs all scenes and prints the report.
@@ -101,6 +120,8 @@ fn options(arguments: &Arguments) -> Result<RunOptions, Failure> {
         hz: arguments.hz,
         substep_s: arguments.substep,
         seed: arguments.seed,
+        method: arguments.method.as_deref().and_then(methods::method),
+        against_reference: arguments.against.is_some(),
     })
 }
 

@@ -145,5 +145,10 @@ pub(super) fn solver(key: &Key, solver: &Solver) -> Check {
         &key.field("seeding_cell_m"),
         solver.seeding_cell_m,
         &limits::SEEDING_CELL,
+    )?;
+    within(
+        &key.field("method").field("sweep_share"),
+        solver.method.sweep_share,
+        &limits::SWEEP_SHARE,
     )
 }
