@@ -19,3 +19,19 @@ pub struct Link {
     /// Linear RGB.
     pub rgb: [f32; 3],
 }
+
+impl Link {
+    /// The piece's way through one of `parts` equal shares of the sub-step.
+    pub fn piece(&self, part: u32, parts: u32) -> Self {
+        let at = |n: u32| match n {
+            0 => self.from,
+            n if n == parts => self.to,
+            n => self.from.lerp(self.to, f64::from(n) / f64::from(parts)),
+        };
+        Self {
+            from: at(part),
+            to: at(part + 1),
+            ..self.clone()
+        }
+    }
+}

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::base::statistics::quantile;
 use crate::field::TileId;
 use crate::gpu::{GpuError, TickError};
-use crate::scene::assets::Assets;
 use crate::scene::Scene;
+use crate::scene::assets::Assets;
 use crate::sim::measure::Standing;
 use crate::sim::{Meadow, MeadowError};
 
@@ -58,17 +58,23 @@ impl Against {
     /// # Errors
     ///
     /// As for [`Meadow::new`].
-    pub fn new(scene: Scene, assets: &Assets) -> Result<Self, MeadowError> {
+    pub fn reference(scene: Scene, assets: &Assets) -> Result<Self, MeadowError> {
         let mut meadow = Meadow::new(scene, assets)?;
-        Ok(Self {
-            engine: Engine::reference(&mut meadow),
+        let engine = Engine::reference(&mut meadow);
+        Ok(Self::new(meadow, engine))
+    }
+
+    /// Compares with any other run of the same scene at its start.
+    pub fn new(meadow: Meadow, engine: Engine) -> Self {
+        Self {
+            engine,
             meadow,
             flipped: BTreeSet::new(),
             touched: BTreeSet::new(),
             squares_m2: Vec::new(),
             lean_both: 0,
             lean_either: 0,
-        })
+        }
     }
 
     /// Advances the reference to the time of a meadow: by one sub-step where both have the same.
@@ -138,7 +144,11 @@ impl Against {
             imprint_iou: (self.lean_either > 0).then(overlap),
             side_flips: self.flipped.len() as u64,
             touched_plants: self.touched.len() as u64,
-            flipped_roots_m: self.flipped.iter().filter_map(|&id| self.root_m(id)).collect(),
+            flipped_roots_m: self
+                .flipped
+                .iter()
+                .filter_map(|&id| self.root_m(id))
+                .collect(),
         }
     }
 

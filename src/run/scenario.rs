@@ -169,7 +169,7 @@ pub fn run_scene(
     scene.grass.seed = options.seed.unwrap_or(scene.grass.seed);
     let mut against = None;
     if options.against_reference {
-        let reference = Against::new(scene.clone(), &loaded.assets);
+        let reference = Against::reference(scene.clone(), &loaded.assets);
         against = Some(reference.map_err(|error| RunError::new(name, error))?);
     }
     if let Some(method) = options.method {

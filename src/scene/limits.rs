@@ -96,6 +96,7 @@ pub const SKIN: Range = range(0.0, 0.05, "m");
 pub const SPRING_RATE: Range = range(0.0, 10_000.0, "per second");
 pub const ROUNDS: Range = range(1.0, 32.0, "");
 pub const STRAIN_LIMIT: Range = range(1e-4, 1.0, "");
+pub const GRASS_STEPS: Range = range(1.0, 1024.0, "");
 pub const SWEEP_SHARE: Range = range(0.001, 1e6, "");
 pub const SWEEPS: Range = range(1.0, 1024.0, "");
 pub const TILE_SIDE: Range = range(0.05, 64.0, "m");

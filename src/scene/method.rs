@@ -20,6 +20,9 @@ pub struct Method {
     /// How far a body may travel in one sweep of the grass, over its half thickness.
     #[schemars(range(min = limits::SWEEP_SHARE.min, max = limits::SWEEP_SHARE.max))]
     pub sweep_share: f64,
+    /// Sub-steps of the grass in one step of the bodies, which are taken to move evenly meanwhile.
+    #[schemars(range(min = limits::GRASS_STEPS.min, max = limits::GRASS_STEPS.max))]
+    pub grass_steps: u32,
 }
 
 impl Default for Method {
@@ -32,6 +35,7 @@ impl Default for Method {
             springs: Springs::Default,
             recovery: Recovery::Lengths,
             sweep_share: 0.5,
+            grass_steps: 1,
         }
     }
 }

@@ -10,7 +10,8 @@ use super::method::Method;
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Solver {
-    /// Length of a sub-step, in seconds, whatever the frame rate.
+    /// Length of a sub-step of the grass, in seconds, whatever the frame rate. The bodies have the
+    /// same unless `method.grass_steps` is more than 1.
     #[schemars(range(min = limits::SUBSTEP.min, max = limits::SUBSTEP.max))]
     pub substep_s: f64,
     /// Time from the last contact to the wind pose, T of O09 section 5.5, in seconds.

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::bodies::{Bodies, BodyError};
+use crate::bodies::{Bodies, BodyError, Link};
 use crate::field::grid::ANCHOR_CELLS;
 use crate::field::tiles::Changes;
 use crate::field::wind::FADE_S;
@@ -41,6 +41,8 @@ pub struct Meadow {
     /// Events in the order of their times, and how many have happened.
     script: Vec<Event>,
     scripted: usize,
+    /// The bodies' ways through the current sub-step.
+    links: Vec<Link>,
     movers: Vec<Mover>,
 }
 
@@ -108,6 +110,7 @@ impl Meadow {
             wind,
             script,
             scripted: 0,
+            links: Vec::new(),
             movers: Vec::new(),
             scene,
         };
@@ -136,6 +139,9 @@ impl Meadow {
     ///
     /// An event the bodies refuse.
     pub fn script(&mut self) -> Result<(), MeadowError> {
+        if self.part_of_body_step() > 0 {
+            return Ok(());
+        }
         // Half a nanosecond forgives the rounding of ticks · Δt.
         let now = self.time_s() + 5e-10;
         while self
@@ -169,10 +175,23 @@ impl Meadow {
         Ok(())
     }
 
+    /// Which sub-step of the grass, from 0, the next one is within a step of the bodies.
+    fn part_of_body_step(&self) -> u32 {
+        self.ticks % self.scene.solver.method.grass_steps
+    }
+
     /// Moves the bodies by one sub-step.
     pub fn move_bodies(&mut self) {
-        let dt = self.scene.solver.substep_s;
-        self.bodies.step(self.time_s(), dt);
+        let (part, parts) = (
+            self.part_of_body_step(),
+            self.scene.solver.method.grass_steps,
+        );
+        if part == 0 {
+            let dt = self.scene.solver.substep_s * f64::from(parts);
+            self.bodies.step(self.time_s(), dt);
+        }
+        let links = self.bodies.links().iter();
+        self.links = links.map(|link| link.piece(part, parts)).collect();
         let skin_m = f64::from(self.scene.solver.skin_m);
         let whole = takes_whole_bodies(&self.scene.solver.method);
         self.parts.extend(self.bodies.shapes(), skin_m, whole);
@@ -185,8 +204,7 @@ impl Meadow {
         let solver = &self.scene.solver;
         let shapes = self.bodies.shapes();
         self.movers = self
-            .bodies
-            .links()
+            .links
             .iter()
             .zip(0..)
             .map(|(link, number)| Mover::new(link, number, &shapes[link.shape as usize], solver))

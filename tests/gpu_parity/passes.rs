@@ -205,7 +205,7 @@ fn compare_drawn(
 ) -> Result<(), Failed> {
     let field = &meadow.field;
     let segments = field.table.segments as usize;
-    let fading = sward::sim::recover::Fading::<f32>::new(&meadow);
+    let fading = sward::sim::recover::Fading::<f32>::new(meadow);
     let plants = field.grid.plants_per_tile();
     let per_tile = plants as usize * (segments + 1);
     for (tile, rows) in meadow.work.tiles.iter().zip(rows.chunks_exact(per_tile)) {

@@ -150,5 +150,10 @@ pub(super) fn solver(key: &Key, solver: &Solver) -> Check {
         &key.field("method").field("sweep_share"),
         solver.method.sweep_share,
         &limits::SWEEP_SHARE,
+    )?;
+    within(
+        &key.field("method").field("grass_steps"),
+        solver.method.grass_steps,
+        &limits::GRASS_STEPS,
     )
 }
