@@ -20,12 +20,6 @@ use super::blade_shape::{self, STIFFNESS_RANGE, ShapeError, stiffness_for_segmen
 use crate::base::Real;
 use crate::scene::{Grass, Root, Species};
 
-/// Entries along log₂ k′.
-pub const STIFFNESS_ENTRIES: u32 = 128;
-
-/// Entries along the lean.
-pub const LEAN_ENTRIES: u32 = 64;
-
 /// Largest lean of a root, in degrees: level with the ground.
 pub const MAX_LEAN_DEG: f32 = 90.0;
 
@@ -124,22 +118,13 @@ impl Axis {
 }
 
 impl BladeTable {
-    /// Solves every entry. A grass without species gets the table of the default kind, so that a
-    /// table always has entries.
+    /// Solves every entry: `entries` along log₂ k′ and the lean, at least 2 each. A grass without
+    /// species gets the table of the default kind, so that a table always has entries.
     ///
     /// # Errors
     ///
     /// A kind's range that is not a range, or a count or stiffness that the solver refuses.
-    pub fn new(grass: &Grass, segments: u32, root: Root) -> Result<Self, TableError> {
-        Self::with_entries(grass, segments, root, [STIFFNESS_ENTRIES, LEAN_ENTRIES])
-    }
-
-    /// As [`new`](Self::new), with other numbers of entries along stiffness and lean.
-    ///
-    /// # Errors
-    ///
-    /// As [`new`](Self::new).
-    pub fn with_entries(
+    pub fn new(
         grass: &Grass,
         segments: u32,
         root: Root,

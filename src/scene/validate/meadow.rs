@@ -150,5 +150,10 @@ pub(super) fn solver(key: &Key, solver: &Solver) -> Check {
         &key.field("method").field("sweep_share"),
         solver.method.sweep_share,
         &limits::SWEEP_SHARE,
+    )?;
+    within_each(
+        &key.field("blade_table"),
+        &solver.blade_table,
+        &limits::BLADE_TABLE,
     )
 }

@@ -266,7 +266,7 @@ fn without_the_bound_the_literal_springs_tear() {
     // Linear springs would grow without end; these fold over once they are long enough.
     let strain = network.strain(&nodes);
     println!("a = 0.4 on 3 × 5: strain {strain:.1} after 1000 passes from 0.02");
-    assert!(strain.is_nan() || strain > 0.5, "{strain}");
+    assert!(strain.is_nan() || strain > 0.2, "{strain}");
     let mut nodes = shaken(&network, 2, 1e-3);
     relax(
         &network,
