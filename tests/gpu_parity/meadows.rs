@@ -24,6 +24,7 @@ pub fn bumpy_field(solver: &Solver) -> Result<Field, Failed> {
                 share: 0.4,
                 height_m: [0.08, 0.2],
                 stiffness: [50.0, 400.0],
+                lean_deg: [0.0, 16.0],
                 flexibility: 0.6,
                 ..Species::default()
             },

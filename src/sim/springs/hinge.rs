@@ -8,14 +8,12 @@
 
 use crate::base::{Real, Vec3};
 
-use super::network::Network;
-
-/// Turns every hinge, root to tip, so that the extension of its bend spring loses the share
-/// `share` = 2a.
-pub(super) fn turn<R: Real>(network: &Network<R>, nodes: &mut [Vec3<R>], share: R) {
+/// Turns every hinge of a centre line, root to tip, so that the extension of its bend spring loses
+/// the share `share` = 2a. `rest` holds the same nodes at rest. In place, nothing is allocated.
+pub fn turn<R: Real>(rest: &[Vec3<R>], nodes: &mut [Vec3<R>], share: R) {
     let two = R::of(2.0);
-    for j in 0..nodes.len().saturating_sub(2) {
-        let rest = (network.rest[j + 2] - network.rest[j]).length();
+    for j in 0..nodes.len().min(rest.len()).saturating_sub(2) {
+        let rest = (rest[j + 2] - rest[j]).length();
         let (below, above) = (nodes[j + 1] - nodes[j], nodes[j + 2] - nodes[j + 1]);
         let (b, a) = (below.length(), above.length());
         let chord = (nodes[j + 2] - nodes[j]).length();

@@ -32,7 +32,7 @@ pub(super) fn pass<R: Real>(
     let energy = network.energy(nodes);
     if network.is_blade {
         lay_out(network, nodes);
-        hinge::turn(network, nodes, step + step);
+        hinge::turn(&network.rest, nodes, step + step);
     } else {
         sweep(network, nodes, step);
     }

@@ -159,6 +159,36 @@ fn steps_are_bounded() {
     assert_eq!(step::literal(1.0, 0.0).step, 0.0);
 }
 
+#[test]
+fn a_turned_hinge_changes_its_own_spring_alone() {
+    let rest = shaken(&Network::blade(&straight(8)), 1, 0.005);
+    let start = shaken(&Network::blade(&straight(8)), 2, 0.01);
+    // The same lengths as at rest, so that every extension can be undone.
+    let mut line = vec![rest[0]];
+    for j in 1..9 {
+        let direction = (start[j] - start[j - 1]).unit_or(Vec3::UP);
+        line.push(line[j - 1] + direction * (rest[j] - rest[j - 1]).length());
+    }
+    let before = line.clone();
+    hinge::turn(&rest, &mut line, 0.4);
+    let length =
+        |nodes: &[Vec3<f64>], j: usize, reach: usize| (nodes[j + reach] - nodes[j]).length();
+    for j in 0..8 {
+        assert!(
+            (length(&line, j, 1) - length(&before, j, 1)).abs() < 1e-15,
+            "segment {j}"
+        );
+    }
+    for j in 0..7 {
+        let extension = |nodes: &[Vec3<f64>]| length(nodes, j, 2) - length(&rest, j, 2);
+        assert!(
+            (extension(&line) - 0.6 * extension(&before)).abs() < 1e-15,
+            "bend {j}"
+        );
+    }
+    assert_eq!(line[..2], before[..2]);
+}
+
 /// ½Σw(‖l‖ − l₀)², what a literal pass descends on.
 fn weighted_energy(network: &Network<f64>, nodes: &[Vec3<f64>]) -> f64 {
     let weight = |spring: &Spring<f64>| {
