@@ -3,13 +3,13 @@
 use rayon::prelude::*;
 use wgpu::BufferUsages;
 
+use crate::base::Real;
 use crate::field::TileId;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::sim::Meadow;
 use crate::sim::cpu::poses;
-use crate::base::Real;
-use crate::sim::recover::Fading;
 use crate::sim::measure::GrassState;
+use crate::sim::recover::Fading;
 
 /// A copy of what an engine on the processor knows of its active tiles, for drawing. It is laid
 /// out like [`GpuGrass::drawn`](crate::gpu::GpuGrass::drawn).

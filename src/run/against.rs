@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::base::statistics::quantile;
 use crate::field::TileId;
 use crate::gpu::{GpuError, TickError};
-use crate::scene::assets::Assets;
 use crate::scene::Scene;
+use crate::scene::assets::Assets;
 use crate::sim::measure::Standing;
 use crate::sim::{Meadow, MeadowError};
 
@@ -138,7 +138,11 @@ impl Against {
             imprint_iou: (self.lean_either > 0).then(overlap),
             side_flips: self.flipped.len() as u64,
             touched_plants: self.touched.len() as u64,
-            flipped_roots_m: self.flipped.iter().filter_map(|&id| self.root_m(id)).collect(),
+            flipped_roots_m: self
+                .flipped
+                .iter()
+                .filter_map(|&id| self.root_m(id))
+                .collect(),
         }
     }
 

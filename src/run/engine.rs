@@ -167,9 +167,12 @@ impl Engine {
         Ok(match self {
             Self::Cpu(grass) => widened(measure::near(meadow, grass, place_m, within_m)),
             Self::Reference(grass) => measure::near(meadow, grass.as_ref(), place_m, within_m),
-            Self::Gpu(engine) => {
-                widened(measure::near(meadow, engine.state(meadow)?, place_m, within_m))
-            }
+            Self::Gpu(engine) => widened(measure::near(
+                meadow,
+                engine.state(meadow)?,
+                place_m,
+                within_m,
+            )),
         })
     }
 

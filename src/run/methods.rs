@@ -76,52 +76,150 @@ pub const METHODS: &[NamedMethod] = &[
             solver.method.push = Push::Literal;
         },
     ),
-    named("cube-16", "masked", "depth cubes of 16 texels", |s| cube(s, 16)),
-    named("cube-32", "masked", "depth cubes of 32 texels", |s| cube(s, 32)),
-    named("cube-64", "masked", "depth cubes of 64 texels", |s| cube(s, 64)),
-    named("cube-128", "masked", "depth cubes of 128 texels", |s| cube(s, 128)),
-    named("cube-256", "masked", "depth cubes of 256 texels", |s| cube(s, 256)),
-    named("nearest-16", "nearest", "16 texels, nearest", |s| nearest(s, 16)),
-    named("nearest-64", "nearest", "64 texels, nearest", |s| nearest(s, 64)),
-    named("nearest-256", "nearest", "256 texels, nearest", |s| nearest(s, 256)),
-    named("bilinear-16", "bilinear", "16 texels, plain bilinear", |s| bilinear(s, 16)),
-    named("bilinear-64", "bilinear", "64 texels, plain bilinear", |s| bilinear(s, 64)),
-    named("bilinear-256", "bilinear", "256 texels, plain bilinear", |s| bilinear(s, 256)),
-    named("body-cube-64", "per body", "one cube of 64 texels per body, as O09", |s| {
-        cube(s, 64);
-        s.method.cube_per = CubePer::Body;
+    named("cube-16", "masked", "depth cubes of 16 texels", |s| {
+        cube(s, 16)
     }),
-    named("body-cube-256", "per body", "one cube of 256 texels per body", |s| {
-        cube(s, 256);
-        s.method.cube_per = CubePer::Body;
+    named("cube-32", "masked", "depth cubes of 32 texels", |s| {
+        cube(s, 32)
     }),
-    named("voxels-16", "voxels", "a field of 16³ distances per part", |s| voxels(s, 16)),
-    named("voxels-32", "voxels", "a field of 32³ distances per part", |s| voxels(s, 32)),
-    named("voxels-64", "voxels", "a field of 64³ distances per part", |s| voxels(s, 64)),
-    named("analytic", "analytic", "closed forms of the convex parts", |solver| {
-        solver.method.collide = Collide::Analytic;
+    named("cube-64", "masked", "depth cubes of 64 texels", |s| {
+        cube(s, 64)
     }),
-    named("substep-30", "sub-steps", "sub-steps of 1/30 s", |s| substep(s, 30.0)),
-    named("substep-60", "sub-steps", "sub-steps of 1/60 s", |s| substep(s, 60.0)),
-    named("substep-120", "sub-steps", "sub-steps of 1/120 s", |s| substep(s, 120.0)),
-    named("substep-240", "sub-steps", "sub-steps of 1/240 s", |s| substep(s, 240.0)),
-    named("substep-480", "sub-steps", "sub-steps of 1/480 s", |s| substep(s, 480.0)),
-    named("one-sweep", "sweeps", "one sweep per sub-step, however fast a body is", |s| {
-        s.method.sweep_share = ONE_SWEEP;
+    named("cube-128", "masked", "depth cubes of 128 texels", |s| {
+        cube(s, 128)
     }),
-    named("sweep-1", "sweeps", "a body travels its half thickness in a sweep", |s| {
-        s.method.sweep_share = 1.0;
+    named("cube-256", "masked", "depth cubes of 256 texels", |s| {
+        cube(s, 256)
     }),
-    named("sweep-1/8", "sweeps", "an eighth of its half thickness", |s| {
-        s.method.sweep_share = 0.125;
+    named("nearest-16", "nearest", "16 texels, nearest", |s| {
+        nearest(s, 16)
     }),
-    named("rounds-1", "rounds", "one round of lengths and push", |s| s.rounds = [1, 1]),
+    named("nearest-64", "nearest", "64 texels, nearest", |s| {
+        nearest(s, 64)
+    }),
+    named("nearest-256", "nearest", "256 texels, nearest", |s| {
+        nearest(s, 256)
+    }),
+    named(
+        "bilinear-16",
+        "bilinear",
+        "16 texels, plain bilinear",
+        |s| bilinear(s, 16),
+    ),
+    named(
+        "bilinear-64",
+        "bilinear",
+        "64 texels, plain bilinear",
+        |s| bilinear(s, 64),
+    ),
+    named(
+        "bilinear-256",
+        "bilinear",
+        "256 texels, plain bilinear",
+        |s| bilinear(s, 256),
+    ),
+    named(
+        "body-cube-64",
+        "per body",
+        "one cube of 64 texels per body, as O09",
+        |s| {
+            cube(s, 64);
+            s.method.cube_per = CubePer::Body;
+        },
+    ),
+    named(
+        "body-cube-256",
+        "per body",
+        "one cube of 256 texels per body",
+        |s| {
+            cube(s, 256);
+            s.method.cube_per = CubePer::Body;
+        },
+    ),
+    named(
+        "voxels-16",
+        "voxels",
+        "a field of 16³ distances per part",
+        |s| voxels(s, 16),
+    ),
+    named(
+        "voxels-32",
+        "voxels",
+        "a field of 32³ distances per part",
+        |s| voxels(s, 32),
+    ),
+    named(
+        "voxels-64",
+        "voxels",
+        "a field of 64³ distances per part",
+        |s| voxels(s, 64),
+    ),
+    named(
+        "analytic",
+        "analytic",
+        "closed forms of the convex parts",
+        |solver| {
+            solver.method.collide = Collide::Analytic;
+        },
+    ),
+    named("substep-30", "sub-steps", "sub-steps of 1/30 s", |s| {
+        substep(s, 30.0)
+    }),
+    named("substep-60", "sub-steps", "sub-steps of 1/60 s", |s| {
+        substep(s, 60.0)
+    }),
+    named("substep-120", "sub-steps", "sub-steps of 1/120 s", |s| {
+        substep(s, 120.0)
+    }),
+    named("substep-240", "sub-steps", "sub-steps of 1/240 s", |s| {
+        substep(s, 240.0)
+    }),
+    named("substep-480", "sub-steps", "sub-steps of 1/480 s", |s| {
+        substep(s, 480.0)
+    }),
+    named(
+        "one-sweep",
+        "sweeps",
+        "one sweep per sub-step, however fast a body is",
+        |s| {
+            s.method.sweep_share = ONE_SWEEP;
+        },
+    ),
+    named(
+        "sweep-1",
+        "sweeps",
+        "a body travels its half thickness in a sweep",
+        |s| {
+            s.method.sweep_share = 1.0;
+        },
+    ),
+    named(
+        "sweep-1/8",
+        "sweeps",
+        "an eighth of its half thickness",
+        |s| {
+            s.method.sweep_share = 0.125;
+        },
+    ),
+    named("rounds-1", "rounds", "one round of lengths and push", |s| {
+        s.rounds = [1, 1]
+    }),
     named("rounds-2", "rounds", "two rounds", |s| s.rounds = [2, 2]),
-    named("rounds-12", "rounds", "twelve rounds", |s| s.rounds = [12, 12]),
-    named("segments-3", "segments", "blades of 3 segments", |s| s.segments = 3),
-    named("segments-4", "segments", "blades of 4 segments", |s| s.segments = 4),
-    named("segments-6", "segments", "blades of 6 segments", |s| s.segments = 6),
-    named("segments-16", "segments", "blades of 16 segments", |s| s.segments = 16),
+    named("rounds-12", "rounds", "twelve rounds", |s| {
+        s.rounds = [12, 12]
+    }),
+    named("segments-3", "segments", "blades of 3 segments", |s| {
+        s.segments = 3
+    }),
+    named("segments-4", "segments", "blades of 4 segments", |s| {
+        s.segments = 4
+    }),
+    named("segments-6", "segments", "blades of 6 segments", |s| {
+        s.segments = 6
+    }),
+    named("segments-16", "segments", "blades of 16 segments", |s| {
+        s.segments = 16
+    }),
 ];
 
 /// A share no body can travel in one sub-step.

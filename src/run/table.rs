@@ -117,7 +117,9 @@ fn write_metrics(metrics: &Metrics, out: &mut impl Write) -> io::Result<()> {
         metrics.side_flips,
         metrics.compared_plants,
     ) {
-        let overlap = metrics.imprint_iou.map_or("-".into(), |o| format!("{o:.4}"));
+        let overlap = metrics
+            .imprint_iou
+            .map_or("-".into(), |o| format!("{o:.4}"));
         writeln!(
             out,
             "  reference    {} rms, {} for 95%, imprint overlap {overlap}, {flips} of {plants} plants \

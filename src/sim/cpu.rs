@@ -175,7 +175,10 @@ impl<R: Real> Grass<R> {
         let step_over_t = R::of(meadow.step_over_t());
         let (now, segments) = (meadow.work.now, meadow.field.table.segments as usize);
         self.slabs.par_iter_mut().flatten().for_each(|slab| {
-            let plants = slab.touched_at.iter().zip(slab.offsets.chunks_mut(segments));
+            let plants = slab
+                .touched_at
+                .iter()
+                .zip(slab.offsets.chunks_mut(segments));
             for (&touched_at, offsets) in plants {
                 if touched_at != 0 && touched_at != now {
                     fade_literally(offsets, now - touched_at, step_over_t);

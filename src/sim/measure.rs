@@ -17,8 +17,8 @@ use super::meadow::Meadow;
 use super::recover::Fading;
 use super::relax::largest_strain;
 use super::slab::Slab;
-use super::true_bodies::{ON_GROUND_M, TrueBodies};
 pub use super::true_bodies::Depth;
+use super::true_bodies::{ON_GROUND_M, TrueBodies};
 use super::work::TileWork;
 
 /// Where the grass's state can be read.
@@ -215,7 +215,10 @@ impl Snapshot {
         plant: &Standing<R>,
     ) {
         let mut nearest = f64::NEG_INFINITY;
-        let nodes = plant.nodes.iter().map(|node| Vec3::<f64>::of(node.to_f64()));
+        let nodes = plant
+            .nodes
+            .iter()
+            .map(|node| Vec3::<f64>::of(node.to_f64()));
         let nodes: Vec<Vec3<f64>> = nodes.collect();
         let mut below_inside = false;
         for (&from, &p) in nodes.iter().zip(&nodes[1..]) {

@@ -173,7 +173,10 @@ mod tests {
             for (age, recovery) in (1..=240).flat_map(|age| {
                 [Recovery::Lengths, Recovery::Angles].map(|recovery| (age, recovery))
             }) {
-                let fading = Fading { recovery, ..LENGTHS };
+                let fading = Fading {
+                    recovery,
+                    ..LENGTHS
+                };
                 let nodes = recovering_pose(&wind, &offsets, age, &fading, 0.05);
                 for j in 0..8 {
                     let length = (nodes[j + 1] - nodes[j]).length();
@@ -189,7 +192,9 @@ mod tests {
     #[test]
     fn angles_fade_by_their_share() {
         let wind = upright();
-        let bent: Vec<_> = (1..=8).map(|j| vec3(0.05 * f64::from(j), 0.0, 0.0)).collect();
+        let bent: Vec<_> = (1..=8)
+            .map(|j| vec3(0.05 * f64::from(j), 0.0, 0.0))
+            .collect();
         let offsets: Vec<_> = bent.iter().zip(&wind[1..]).map(|(&b, &w)| b - w).collect();
         let fading = Fading {
             recovery: Recovery::Angles,
@@ -214,7 +219,11 @@ mod tests {
         };
         // √((2 ln2 / 3)·T·Δt) for T = 2 s, to a frame.
         for (hz, want) in [(30.0, 0.157), (60.0, 0.115), (240.0, 0.060)] {
-            assert!((half_life(hz) - want).abs() <= 1.5 / hz, "{hz} Hz: {}", half_life(hz));
+            assert!(
+                (half_life(hz) - want).abs() <= 1.5 / hz,
+                "{hz} Hz: {}",
+                half_life(hz)
+            );
         }
     }
 
@@ -222,9 +231,6 @@ mod tests {
     fn at_the_end_it_is_the_wind_pose_itself() {
         let wind = upright();
         let offsets = vec![vec3(0.1, -0.2, 0.3); 8];
-        assert_eq!(
-            recovering_pose(&wind, &offsets, 240, &LENGTHS, 0.05),
-            wind
-        );
+        assert_eq!(recovering_pose(&wind, &offsets, 240, &LENGTHS, 0.05), wind);
     }
 }

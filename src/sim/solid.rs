@@ -47,7 +47,10 @@ pub enum Solid<R> {
     /// Everything that is in one of several convex solids.
     Union(Vec<Member<R>>),
     /// A closed triangle mesh, grown by a skin.
-    Mesh { mesh: Arc<TrueMesh>, skin: R },
+    Mesh {
+        mesh: Arc<TrueMesh>,
+        skin: R,
+    },
 }
 
 /// Points with normal·p ≤ offset are inside.

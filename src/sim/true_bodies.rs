@@ -64,9 +64,7 @@ impl<'a> TrueBodies<'a> {
             let part = &meadow.parts.parts[contact.part as usize];
             let limit_m = match contact.tested {
                 Tested::Closed => ANALYTIC_LIMIT_M,
-                Tested::Cube | Tested::Voxels => {
-                    part.texel_m(meadow.scene.solver.cube_resolution)
-                }
+                Tested::Cube | Tested::Voxels => part.texel_m(meadow.scene.solver.cube_resolution),
             };
             let Some(whole) = meadow.truth.whole(contact.shape) else {
                 continue;
@@ -115,4 +113,3 @@ impl<'a> TrueBodies<'a> {
         }
     }
 }
-

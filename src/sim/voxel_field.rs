@@ -73,7 +73,13 @@ impl VoxelField {
         let mut slope = [R::ZERO; 3];
         for corner in 0..8 {
             let up = [corner & 1, corner >> 1 & 1, corner >> 2];
-            let weight = |a: usize| if up[a] == 1 { part[a] } else { R::ONE - part[a] };
+            let weight = |a: usize| {
+                if up[a] == 1 {
+                    part[a]
+                } else {
+                    R::ONE - part[a]
+                }
+            };
             let at = ((first[2] + up[2]) * side + first[1] + up[1]) * side + first[0] + up[0];
             let value = R::of_f32(self.depths[at]);
             depth += value * (weight(0) * weight(1) * weight(2));

@@ -6,7 +6,13 @@ use super::super::solid::{NO_FACE, Plane, Reach, Solid};
 use super::{DEPTH_STEPS, HIDDEN, HIT, face_normal};
 
 /// Start and direction of the ray through a texel of a face.
-pub(super) fn ray(face: u32, low: Vec3<f32>, high: Vec3<f32>, s: f32, t: f32) -> (Vec3<f32>, Vec3<f32>) {
+pub(super) fn ray(
+    face: u32,
+    low: Vec3<f32>,
+    high: Vec3<f32>,
+    s: f32,
+    t: f32,
+) -> (Vec3<f32>, Vec3<f32>) {
     let from = if face & 1 == 0 { high } else { low };
     let from = match face / 2 {
         0 => vec3(from.x, s, t),
@@ -17,7 +23,11 @@ pub(super) fn ray(face: u32, low: Vec3<f32>, high: Vec3<f32>, s: f32, t: f32) ->
 }
 
 /// First meeting of a ray along a coordinate axis with a solid: distance and outward normal.
-pub(super) fn enter(solid: &Solid<f32>, from: Vec3<f32>, along: Vec3<f32>) -> Option<(f32, Vec3<f32>)> {
+pub(super) fn enter(
+    solid: &Solid<f32>,
+    from: Vec3<f32>,
+    along: Vec3<f32>,
+) -> Option<(f32, Vec3<f32>)> {
     match solid {
         Solid::Ball { radius } => enter_ball(from, along, *radius),
         Solid::Box { half } => {
@@ -145,4 +155,3 @@ pub(super) fn pack_normal(n: Vec3<f32>) -> u32 {
     let steps = |v: f32| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 65_535.0 + 0.5) as u32;
     steps(x) | steps(y) << 16
 }
-
