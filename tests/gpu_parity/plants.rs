@@ -248,9 +248,8 @@ pub fn poses_about_the_knee_agree(device: &Device) -> Result<(), Failed> {
         tips.add(distance([x, y, z], want), || name.to_owned());
         Ok(())
     })?;
-    let rms: f64 = (squares / count).sqrt();
-    ensure(rms <= 1e-5, || {
-        format!("tips about the knee: rms {rms:e} m")
+    ensure(tips.rms() <= 1e-5, || {
+        format!("tips about the knee: rms {:e} m", tips.rms())
     })?;
     tips.check(4e-4)
 }
