@@ -94,6 +94,7 @@ fn numbers_out_of_range() {
         "(solver: (segments: 17))" => "1:21" "solver.segments": "1 to 16";
         "(solver: (cube_resolution: 4))" => "1:28" "solver.cube_resolution": "8 to 256 texels";
         "(solver: (rounds: (6, 2)))" => "1:19" "solver.rounds": "(6, 2)", "smaller value first";
+        "(solver: (blade_table: (128, 1)))" => "1:30" "solver.blade_table[1]": "2 to 512 entries";
         "(solver: (max_sweeps: 0))" => "1:23" "solver.max_sweeps": "1 to 1024";
         "(grass: (density_per_m2: -1))" => "1:26" "grass.density_per_m2": "is -1", "0 to 10000";
         "(grass: (species: [(height_m: (0.4, 0.2))]))" => "1:31" "grass.species[0].height_m": "(0.4, 0.2)";
@@ -110,6 +111,7 @@ fn the_limits_themselves_are_allowed() {
         "(duration_s: 172800)",
         "(solver: (substep_s: 0.06666666666666667, segments: 16, cube_resolution: 256, skin_m: 0.05))",
         "(solver: (substep_s: 0.0001, recovery_s: 60, segments: 1, cube_resolution: 8, rounds: (1, 1)))",
+        "(solver: (blade_table: (2, 512)))",
         "(grass: (density_per_m2: 10000, species: []))",
         "(grass: (density_per_m2: 0, species: [(height_m: (0.001, 10), lean_deg: (0, 90))]))",
         "(terrain: (ground: Flat(size_m: (0.1, 0.1), spacing_m: 0.5)))",

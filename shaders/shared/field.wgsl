@@ -43,7 +43,9 @@ struct FieldUniform {
     segment_share: f32,
     // Length of the longest blade.
     reach_m: f32,
-    spare: u32,
+    // Fraction of the stiffness axis of the blade table at which its entries are densest, below 0
+    // where both axes are even.
+    stiffness_knee: f32,
     // Share of the wind's push that each segment takes, four a row.
     wind_shares: array<vec4f, 4>,
     species: array<SpeciesUniform, MAX_SPECIES>,

@@ -19,16 +19,40 @@ struct PoseNode {
     direction: vec3f,
 }
 
-// The entry below a fraction of an axis (x) and the rest of the way to the next (y).
-fn entry_and_rest(fraction: f32, entries: u32) -> vec2f {
-    let at = clamp(fraction, 0.0, 1.0) * f32(entries - 1u);
+// A place on the stiffness axis of the blade table, counted in entries, from a fraction of it.
+fn stiffness_in_entries(fraction: f32) -> f32 {
+    let last = f32(field.stiffness_entries - 1u);
+    let knee = field.stiffness_knee;
+    if knee < 0.0 {
+        return fraction * last;
+    }
+    let middle = f32(field.stiffness_entries / 2u);
+    if fraction < knee {
+        return middle * (1.0 - sqrt(sqrt((knee - fraction) / knee)));
+    }
+    return middle + (last - middle) * sqrt(sqrt((fraction - knee) / (1.0 - knee)));
+}
+
+// A place on the lean axis; where the stiffness axis has a knee, entries crowd towards no lean.
+fn lean_in_entries(fraction: f32) -> f32 {
+    let last = f32(field.lean_entries - 1u);
+    if field.stiffness_knee < 0.0 {
+        return fraction * last;
+    }
+    return sqrt(sqrt(fraction)) * last;
+}
+
+// The entry below a place counted in entries (x) and the rest of the way to the next (y).
+fn entry_and_rest(at: f32, entries: u32) -> vec2f {
     let below = min(floor(at), f32(entries - 2u));
     return vec2f(below, at - below);
 }
 
 fn blade_place(plant: Plant) -> BladePlace {
-    let stiffness = entry_and_rest(plant.stiffness, field.stiffness_entries);
-    let lean = entry_and_rest(plant.lean, field.lean_entries);
+    let stiffness_at = stiffness_in_entries(clamp(plant.stiffness, 0.0, 1.0));
+    let lean_at = lean_in_entries(clamp(plant.lean, 0.0, 1.0));
+    let stiffness = entry_and_rest(stiffness_at, field.stiffness_entries);
+    let lean = entry_and_rest(lean_at, field.lean_entries);
     let entry = u32(lean.x) * field.stiffness_entries + u32(stiffness.x);
     return BladePlace(entry * field.segments, stiffness.y, lean.y);
 }

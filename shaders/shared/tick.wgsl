@@ -12,7 +12,7 @@ struct TickUniform {
     most_rounds: u32,
     // Δt/T of the recovery.
     step_over_t: f32,
-    // κΔt of the bend springs over the whole sub-step.
+    // 2κΔt of the bend springs over the whole sub-step.
     bend: f32,
     strain_limit: f32,
     // The wind at the start of the sub-step.

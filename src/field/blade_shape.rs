@@ -22,6 +22,8 @@
 //! torques alone would move a blade of 64 segments by 1e-4 of its length where k′ is within 0.1% of
 //! the critical value. The result is rounded once; `residual` is that of the rounded angles.
 
+pub mod descent;
+
 use std::f64::consts::PI;
 
 use thiserror::Error;
@@ -111,6 +113,21 @@ pub fn solve<R: Real>(
     })
 }
 
+/// What every search of a shape asks of its numbers.
+fn check(segments: u32, k_prime: f64, lean_rad: f64) -> Result<(), ShapeError> {
+    if !(1..=MAX_SEGMENTS).contains(&segments) {
+        return Err(ShapeError::Segments(segments));
+    }
+    if !(STIFFNESS_RANGE[0]..=STIFFNESS_RANGE[1]).contains(&k_prime) {
+        return Err(ShapeError::Stiffness(k_prime));
+    }
+    // π as an `f32` lies above π; it means the same lean.
+    if !(0.0..=f64::from(std::f32::consts::PI)).contains(&lean_rad) {
+        return Err(ShapeError::Lean(lean_rad));
+    }
+    Ok(())
+}
+
 /// The k′ above which a blade without lean stands upright.
 ///
 /// # Errors
@@ -185,16 +202,7 @@ struct Chain {
 
 impl Chain {
     fn new(segments: u32, k_prime: f64, root: Root, lean_rad: f64) -> Result<Self, ShapeError> {
-        if !(1..=MAX_SEGMENTS).contains(&segments) {
-            return Err(ShapeError::Segments(segments));
-        }
-        if !(STIFFNESS_RANGE[0]..=STIFFNESS_RANGE[1]).contains(&k_prime) {
-            return Err(ShapeError::Stiffness(k_prime));
-        }
-        // π as an `f32` lies above π; it means the same lean.
-        if !(0.0..=f64::from(std::f32::consts::PI)).contains(&lean_rad) {
-            return Err(ShapeError::Lean(lean_rad));
-        }
+        check(segments, k_prime, lean_rad)?;
         let n = f64::from(segments);
         let root_factor = match root {
             Root::Double => 2.0,

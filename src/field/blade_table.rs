@@ -6,25 +6,42 @@
 //! segments. Between entries they are mixed bilinearly and come out slightly too short, so whoever
 //! follows them from root to tip makes them unit vectors first.
 //!
-//! Source: P15 section 2.3, which keeps the solutions of eq. 12 over k′ in a texture. Deviations:
-//! directions instead of end points; a second axis for the lean, without which the slope of the
-//! shape is infinite at the critical stiffness.
+//! Where blades of hardly any lean are drawn on both sides of the critical stiffness k′c, the shape
+//! is no smooth function of either: its angles grow with √(1 − k′/k′c) below k′c and with the cube
+//! root of the lean at it, and an even table errs by several percent of the length at any size.
+//! There the stiffness axis has a *knee*: half of the entries lie on each side of k′c, at the fourth
+//! powers of even steps away from it, and those of the lean at the fourth powers of even steps from
+//! its smallest. The angles then grow with the square of the steps. Two square roots, which IEEE 754
+//! rounds correctly, turn a fraction into a place.
 //!
-//! Limits: stated by [`BladeTable::max_error`]; 1.9e-4 of a blade's length for the default kind of
-//! grass. A kind whose stiffness range holds the critical value and whose lean starts at 0 is off
-//! by several percent there.
+//! Source: P15 section 2.3, which keeps the solutions of eq. 12 over k′ in a texture. Deviations:
+//! directions instead of end points; a second axis for the lean; the knee.
+//!
+//! Limits: stated by [`BladeTable::max_error`]; in blade lengths, eight segments, measured:
+//!
+//! | stiffness, lean | 64 × 32 | 128 × 64 | 256 × 128 |
+//! |---|---|---|---|
+//! | 60 … 160, 2 … 16° (default kind) | 7.1e-4 | 1.9e-4 | 4.8e-5 |
+//! | 8 … 160, 5° | 1.6e-3 | 4.0e-4 | 1.0e-4 |
+//! | 8 … 160, 0 … 16° | 3.1e-3 | 1.2e-3 | 4.9e-4 |
+//! | 8 … 160, 0 … 90° | 5.7e-3 | 2.2e-3 | 8.8e-4 |
+//! | 8 … 160, none | 1.9e-3 | 4.9e-4 | 2.1e-4 |
+//! | 0.5 … 2000, none | 3.1e-3 | 7.8e-4 | 2.0e-4 |
+//!
+//! A blade without lean at k′c itself has no place in `f32`: an ulp of its fraction turns its tip by
+//! 1e-3 rad.
 
 use thiserror::Error;
 
-use super::blade_shape::{self, STIFFNESS_RANGE, ShapeError, stiffness_for_segments};
+use super::blade_shape::{
+    self, STIFFNESS_RANGE, ShapeError, critical_stiffness, stiffness_for_segments,
+};
 use crate::base::Real;
 use crate::scene::{Grass, Root, Species};
 
-/// Entries along log₂ k′.
-pub const STIFFNESS_ENTRIES: u32 = 128;
-
-/// Entries along the lean.
-pub const LEAN_ENTRIES: u32 = 64;
+/// Blades that lean less than this, 1.95°, bend so suddenly about the critical stiffness that an even
+/// table of the default size errs by more than a thousandth of their length there.
+const KNEE_LEAN_RAD: f64 = 0.034;
 
 /// Largest lean of a root, in degrees: level with the ground.
 pub const MAX_LEAN_DEG: f32 = 90.0;
@@ -45,13 +62,24 @@ pub struct BladeTable {
     root: Root,
 }
 
-/// Evenly spaced entries from `min` to `max`.
+/// Entries from `min` to `max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
     pub min: f64,
     pub max: f64,
     /// At least 2.
     pub entries: u32,
+    pub spacing: Spacing,
+}
+
+/// Where the entries of an axis lie, as fractions 0…1 of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Spacing {
+    Even,
+    /// At fourth powers of even steps away from this fraction, half of the entries on each side.
+    Knee(f32),
+    /// At fourth powers of even steps from 0.
+    FourthPower,
 }
 
 /// The part of the table that a kind of plant draws from, as fractions 0…1 of the two axes:
@@ -100,15 +128,7 @@ impl Axis {
                 .map(|r| r[1])
                 .fold(f64::NEG_INFINITY, f64::max),
             entries: entries.max(2),
-        }
-    }
-
-    /// Entries per unit of the axis; 0 where the axis has no length.
-    pub fn step_inverse(&self) -> f64 {
-        if self.max > self.min {
-            f64::from(self.entries - 1) / (self.max - self.min)
-        } else {
-            0.0
+            spacing: Spacing::Even,
         }
     }
 
@@ -117,29 +137,66 @@ impl Axis {
         self.min + (self.max - self.min) * fraction
     }
 
-    /// The fraction 0…1 of the axis at which a value lies.
+    /// The fraction 0…1 of the axis at which a value lies; 0 where the axis has no length.
     pub fn fraction(&self, value: f64) -> f32 {
-        ((value - self.min) * self.step_inverse() / f64::from(self.entries - 1)) as f32
+        if self.max > self.min {
+            ((value - self.min) / (self.max - self.min)) as f32
+        } else {
+            0.0
+        }
+    }
+
+    /// The fraction 0…1 at a place counted in entries.
+    fn fraction_at(&self, place: f64) -> f64 {
+        let last = f64::from(self.entries - 1);
+        match self.spacing {
+            Spacing::Even => place / last,
+            Spacing::FourthPower => libm::pow(place / last, 4.0),
+            Spacing::Knee(knee) => {
+                let (knee, middle) = (f64::from(knee), f64::from(self.entries / 2));
+                if place < middle {
+                    let away = 1.0 - place / middle;
+                    knee * (1.0 - libm::pow(away, 4.0))
+                } else {
+                    let away = (place - middle) / (last - middle);
+                    knee + (1.0 - knee) * libm::pow(away, 4.0)
+                }
+            }
+        }
+    }
+
+    /// The entry below a fraction of the axis, with one above it, and the rest of the way to that.
+    /// Fractions outside 0…1 lie at the nearer end.
+    fn entry_and_rest<R: Real>(&self, fraction: R) -> (usize, R) {
+        let fraction = fraction.clamp(R::ZERO, R::ONE);
+        let last = R::of(f64::from(self.entries - 1));
+        let at = match self.spacing {
+            Spacing::Even => fraction * last,
+            Spacing::FourthPower => fraction.sqrt().sqrt() * last,
+            Spacing::Knee(knee) => {
+                let knee = R::of_f32(knee);
+                let middle = R::of(f64::from(self.entries / 2));
+                if fraction < knee {
+                    middle * (R::ONE - ((knee - fraction) / knee).sqrt().sqrt())
+                } else {
+                    let away = ((fraction - knee) / (R::ONE - knee)).sqrt().sqrt();
+                    middle + (last - middle) * away
+                }
+            }
+        };
+        let below = at.floor().min(R::of(f64::from(self.entries - 2)));
+        (below.to_f64() as usize, at - below)
     }
 }
 
 impl BladeTable {
-    /// Solves every entry. A grass without species gets the table of the default kind, so that a
-    /// table always has entries.
+    /// Solves every entry: `entries` along log₂ k′ and the lean, at least 2 each. A grass without
+    /// species gets the table of the default kind, so that a table always has entries.
     ///
     /// # Errors
     ///
     /// A kind's range that is not a range, or a count or stiffness that the solver refuses.
-    pub fn new(grass: &Grass, segments: u32, root: Root) -> Result<Self, TableError> {
-        Self::with_entries(grass, segments, root, [STIFFNESS_ENTRIES, LEAN_ENTRIES])
-    }
-
-    /// As [`new`](Self::new), with other numbers of entries along stiffness and lean.
-    ///
-    /// # Errors
-    ///
-    /// As [`new`](Self::new).
-    pub fn with_entries(
+    pub fn new(
         grass: &Grass,
         segments: u32,
         root: Root,
@@ -159,8 +216,12 @@ impl BladeTable {
             .iter()
             .map(lean_range_rad)
             .collect::<Result<Vec<_>, _>>()?;
-        let log2_k = Axis::over(&log2_ks, entries[0]);
-        let lean_rad = Axis::over(&leans, entries[1]);
+        let mut log2_k = Axis::over(&log2_ks, entries[0]);
+        let mut lean_rad = Axis::over(&leans, entries[1]);
+        if let Some(knee) = knee(&log2_k, &lean_rad, segments, root)? {
+            log2_k.spacing = Spacing::Knee(knee);
+            lean_rad.spacing = Spacing::FourthPower;
+        }
         let species = log2_ks.iter().zip(&leans).map(|(k, lean)| SpeciesRange {
             stiffness: k.map(|end| log2_k.fraction(end)),
             lean: lean.map(|end| lean_rad.fraction(end)),
@@ -181,8 +242,8 @@ impl BladeTable {
         for lean in 0..self.lean_rad.entries {
             for stiffness in 0..self.log2_k.entries {
                 let shape = self.solve_at(
-                    f64::from(stiffness) / f64::from(self.log2_k.entries - 1),
-                    f64::from(lean) / f64::from(self.lean_rad.entries - 1),
+                    self.log2_k.fraction_at(f64::from(stiffness)),
+                    self.lean_rad.fraction_at(f64::from(lean)),
                 )?;
                 let direction = |&a: &f64| [libm::sin(a) as f32, libm::cos(a) as f32];
                 self.directions
@@ -209,8 +270,8 @@ impl BladeTable {
 
     /// The place at a fraction of each axis; fractions outside 0…1 lie at the nearer end.
     pub fn place<R: Real>(&self, stiffness: R, lean: R) -> Place<R> {
-        let (stiffness_entry, stiffness) = entry_and_rest(stiffness, self.log2_k.entries);
-        let (lean_entry, lean) = entry_and_rest(lean, self.lean_rad.entries);
+        let (stiffness_entry, stiffness) = self.log2_k.entry_and_rest(stiffness);
+        let (lean_entry, lean) = self.lean_rad.entry_and_rest(lean);
         let entry = lean_entry * self.log2_k.entries as usize + stiffness_entry;
         Place {
             first: entry * self.segments as usize,
@@ -242,16 +303,16 @@ impl BladeTable {
     ///
     /// The solver's.
     pub fn max_error(&self) -> Result<f64, ShapeError> {
-        let inside = |entry: u32, quarter: u32, entries: u32| {
-            (f64::from(entry) + f64::from(quarter) * 0.25) / f64::from(entries - 1)
+        let inside = |entry: u32, quarter: u32, axis: &Axis| {
+            axis.fraction_at(f64::from(entry) + f64::from(quarter) * 0.25)
         };
         let mut largest: f64 = 0.0;
         for lean in 0..self.lean_rad.entries - 1 {
             for stiffness in 0..self.log2_k.entries - 1 {
                 for quarters in 0..9 {
                     largest = largest.max(self.error_at(
-                        inside(stiffness, 1 + quarters % 3, self.log2_k.entries),
-                        inside(lean, 1 + quarters / 3, self.lean_rad.entries),
+                        inside(stiffness, 1 + quarters % 3, &self.log2_k),
+                        inside(lean, 1 + quarters / 3, &self.lean_rad),
                     )?);
                 }
             }
@@ -274,11 +335,18 @@ impl BladeTable {
     }
 }
 
-/// The entry below a fraction of an axis, with one above it, and the rest of the way to that.
-fn entry_and_rest<R: Real>(fraction: R, entries: u32) -> (usize, R) {
-    let at = fraction.clamp(R::ZERO, R::ONE) * R::of(f64::from(entries - 1));
-    let below = at.floor().min(R::of(f64::from(entries - 2)));
-    (below.to_f64() as usize, at - below)
+/// The fraction of the stiffness axis at which blades without lean turn upright, if the table has
+/// blades of hardly any lean on both sides of it.
+fn knee(
+    log2_k: &Axis,
+    lean_rad: &Axis,
+    segments: u32,
+    root: Root,
+) -> Result<Option<f32>, ShapeError> {
+    let critical = critical_stiffness(segments, root)? / stiffness_for_segments(1.0, segments);
+    let knee = log2_k.fraction(libm::log2(critical));
+    let has_both_sides = 0.0 < knee && knee < 1.0 && log2_k.entries > 2;
+    Ok((has_both_sides && lean_rad.min < KNEE_LEAN_RAD).then_some(knee))
 }
 
 fn log2_k_range(kind: &Species) -> Result<[f64; 2], TableError> {

@@ -46,7 +46,7 @@ pub enum FieldError {
 impl Field {
     pub fn new(ground: HeightGrid, grass: &Grass, solver: &Solver) -> Result<Self, FieldError> {
         let grid = FieldGrid::new(&ground, grass, solver)?;
-        let table = BladeTable::new(grass, solver.segments, solver.root)?;
+        let table = BladeTable::new(grass, solver.segments, solver.root, solver.blade_table)?;
         let seeds = Seeds::new(grass, solver.philox, &table);
         let octree = Octree::new(&grid, &ground);
         let reach_m = grass

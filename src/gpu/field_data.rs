@@ -7,6 +7,7 @@
 use wgpu::BufferUsages;
 
 use super::{Buffer, Gpu, GpuError};
+use crate::field::blade_table::Spacing;
 use crate::field::plant::{MAX_SPECIES, SpeciesNumbers};
 use crate::field::pose::{MAX_SEGMENTS, wind_share};
 use crate::field::wind::{WAVES, Wave};
@@ -14,6 +15,8 @@ use crate::field::{Anchor, Field, FieldGrid, TileId, WindNow};
 use crate::gpu_struct;
 use crate::sim::work::TileWork;
 
+/// Knee of a blade table whose axes are even.
+pub const NO_KNEE: f32 = -1.0;
 /// Slab of a tile that has none.
 pub const NO_SLAB: u32 = u32::MAX;
 /// State of a tile that is in no list of active ones.
@@ -56,7 +59,7 @@ gpu_struct! {
         pub squares_per_m: f32,
         pub segment_share: f32,
         pub reach_m: f32,
-        pub spare: u32,
+        pub stiffness_knee: f32,
         pub wind_shares: [[f32; 4]; MAX_SEGMENTS / 4],
         pub species: [SpeciesUniform; MAX_SPECIES],
     }
@@ -150,7 +153,10 @@ impl FieldUniform {
             squares_per_m: 1.0 / field.ground.spacing_m,
             segment_share: (1.0 / f64::from(table.segments)) as f32,
             reach_m: field.reach_m,
-            spare: 0,
+            stiffness_knee: match table.log2_k.spacing {
+                Spacing::Knee(knee) => knee,
+                Spacing::Even | Spacing::FourthPower => NO_KNEE,
+            },
             wind_shares,
             species,
         }

@@ -100,6 +100,9 @@ pub const GRASS_STEPS: Range = range(1.0, 1024.0, "");
 pub const SWEEP_SHARE: Range = range(0.001, 1e6, "");
 pub const SWEEPS: Range = range(1.0, 1024.0, "");
 pub const TILE_SIDE: Range = range(0.05, 64.0, "m");
+/// Entries along one axis of the blade table. 512 × 512 of 16 segments are 32 MiB, and are solved in
+/// some seconds.
+pub const BLADE_TABLE: Range = range(2.0, 512.0, "entries");
 pub const SEEDING_CELL: Range = range(0.05, 16.0, "m");
 
 /// Bodies present from the start and spawned by the script, together.

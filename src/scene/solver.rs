@@ -46,6 +46,9 @@ pub struct Solver {
     /// spacing is halved until it is not longer, 12 times at most.
     #[schemars(range(min = limits::SEEDING_CELL.min, max = limits::SEEDING_CELL.max))]
     pub seeding_cell_m: f32,
+    /// Entries of the table of resting blade shapes along stiffness and lean, 2 to 512 each.
+    #[schemars(inner(range(min = limits::BLADE_TABLE.min, max = limits::BLADE_TABLE.max)))]
+    pub blade_table: [u32; 2],
     pub philox: PhiloxRounds,
     pub root: Root,
     /// Which formulas are used where there are several.
@@ -66,6 +69,7 @@ impl Default for Solver {
             max_sweeps: 1024,
             tile_m: 1.0,
             seeding_cell_m: 0.5,
+            blade_table: [128, 64],
             philox: PhiloxRounds::Seven,
             root: Root::Double,
             method: Method::default(),

@@ -12,6 +12,7 @@ pub mod reference;
 pub mod relax;
 pub mod slab;
 pub mod solid;
+pub mod springs;
 pub mod tick;
 pub mod true_bodies;
 pub mod voxel_field;

@@ -7,24 +7,28 @@
 //!
 //! Springs (O09 eq. 6-7, responsibilities r₁ + r₂ = 1): structural ones are replaced by lengths
 //! from root to tip, which hold exactly after one pass; bend springs join every second node, rest
-//! at the wind pose's distance, and act once per sweep, before the rounds. A node moves by
-//! r·2a·(‖l‖ − l₀) with a = κΔt/(1 + 2κΔt), which acts alike at any Δt, instead of k·Δt, which does
+//! at the wind pose's distance, and act once per sweep, before the rounds, by turning what is above
+//! their hinge ([`hinge`]). An extension loses the share 1 − e^(−2κΔt) of a sweep's Δt, which is the
+//! same however time is cut, instead of k·Δt, which is
 //! not. Springs act only on plants pushed in this sub-step: one that a resting body merely holds
 //! stays as it is, so nothing trembles. WGSL twin: `shaders/relax.wgsl`.
 
 use crate::base::{Pose, Real, Vec3, vec3};
 use crate::field::grid::ground_in_anchor;
 use crate::field::{Anchor, Nodes};
-use crate::scene::method::Collide;
+use crate::scene::method::{Collide, Springs};
 use crate::terrain::HeightGrid;
 
 use super::contact::Touch;
+use super::springs::{LiteralBlade, hinge, relax_blade};
 
 /// What the kernel needs besides the plant.
 #[derive(Clone, Copy, Debug)]
 pub struct RelaxSettings<R> {
-    /// κΔt of the bend springs over a whole sub-step.
+    /// 2κΔt of the bend springs over a whole sub-step.
     pub bend: R,
+    /// The printed springs, where the method asks for them.
+    pub literal: Option<LiteralBlade<R>>,
     pub fewest_rounds: u32,
     pub most_rounds: u32,
     pub strain_limit: R,
@@ -34,8 +38,11 @@ pub struct RelaxSettings<R> {
 
 impl<R: Real> RelaxSettings<R> {
     pub fn new(solver: &crate::scene::Solver) -> Self {
+        let rate_step = f64::from(solver.spring_rate_per_s) * solver.substep_s;
         Self {
-            bend: R::of(f64::from(solver.spring_rate_per_s) * solver.substep_s),
+            bend: R::of(2.0 * rate_step),
+            literal: (solver.method.springs == Springs::Literal)
+                .then(|| LiteralBlade::new(rate_step, solver.segments as usize)),
             fewest_rounds: solver.rounds[0],
             most_rounds: solver.rounds[1],
             strain_limit: R::of_f32(solver.strain_limit),
@@ -90,8 +97,15 @@ pub fn respond<R: Real>(
         if pushed == 0 {
             continue;
         }
-        let rate = settings.bend / R::of(f64::from(sweeps));
-        bend_springs(nodes, place, rate);
+        if let Some(literal) = &settings.literal {
+            relax_blade(nodes, place.wind, literal);
+            keep_above_ground(nodes, place);
+            rounds_used = rounds_used.max(1);
+            continue;
+        }
+        let share = R::ONE - decay(settings.bend / R::of(f64::from(sweeps)));
+        let last = place.segments + 1;
+        hinge::turn(&place.wind[..last], &mut nodes[..last], share);
         for round in 1..=settings.most_rounds {
             follow_pushed(nodes, pushed, place);
             pushed = lay_out(nodes, faces, &bodies, place);
@@ -175,21 +189,17 @@ pub(super) fn across<R: Real>(n: Vec3<R>) -> Vec3<R> {
     (axis - n * n.dot(axis)).unit_or(Vec3::UP)
 }
 
-/// `rate` is κΔt.
-fn bend_springs<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, rate: R) {
-    let half = R::of(0.5);
-    let twice_a = R::of(2.0) * rate / (R::ONE + R::of(2.0) * rate);
-    for j in 0..place.segments.saturating_sub(1) {
-        let rest = (place.wind[j + 2] - place.wind[j]).length();
-        let across = nodes[j + 2] - nodes[j];
-        let length = across.length();
-        let direction = across.unit_or(Vec3::UP);
-        let correction = direction * (twice_a * (length - rest));
-        // The root is pinned: it has no responsibility, its partner has all of it.
-        let lower = if j == 0 { R::ZERO } else { half };
-        nodes[j] += correction * lower;
-        nodes[j + 2] -= correction * (R::ONE - lower);
-    }
+/// e^(−x) for x ≥ 0, from its inverse's first terms at x/8: within 3e-6 up to x = 1, falling and
+/// between 0 and 1 for any x.
+pub fn decay<R: Real>(x: R) -> R {
+    let y = x * R::of(0.125);
+    let inverse = R::ONE
+        + y * (R::ONE
+            + y * R::of(0.5) * (R::ONE + y * R::of(1.0 / 3.0) * (R::ONE + y * R::of(0.25))));
+    let eighth = R::ONE / inverse;
+    let quarter = eighth * eighth;
+    let half = quarter * quarter;
+    half * half
 }
 
 /// Structural springs from tip to root: a node below a pushed one follows it to the segment's

@@ -26,6 +26,10 @@ const CHECKS: &[(&str, Check)] = &[
     ("random_words_are_equal", plants::random_words_are_equal),
     ("plants_are_equal", plants::plants_are_equal),
     ("wind_poses_agree", plants::wind_poses_agree),
+    (
+        "poses_about_the_knee_agree",
+        plants::poses_about_the_knee_agree,
+    ),
     ("cubes_of_closed_forms_agree", cubes::closed_forms_agree),
     ("hidden_faces_agree", cubes::hidden_faces_agree),
     ("a_tick_agrees_with_cubes", passes::a_tick_agrees_with_cubes),

@@ -10,6 +10,11 @@ use sward::terrain::HeightGrid;
 
 /// A field on bumpy ground with two kinds of plants and a density that is no whole number.
 pub fn bumpy_field(solver: &Solver) -> Result<Field, Failed> {
+    leaning_field(solver, Species::default().lean_deg)
+}
+
+/// The same, the second kind of which leans by this many degrees.
+pub fn leaning_field(solver: &Solver, lean_deg: [f32; 2]) -> Result<Field, Failed> {
     let mut ground = HeightGrid::flat(14, 11, 1.0);
     for (n, height) in ground.heights_m.iter_mut().enumerate() {
         *height = 2.3 + 0.8 * (TAU * n as f32 * 0.137).sin();
@@ -24,6 +29,7 @@ pub fn bumpy_field(solver: &Solver) -> Result<Field, Failed> {
                 share: 0.4,
                 height_m: [0.08, 0.2],
                 stiffness: [50.0, 400.0],
+                lean_deg,
                 flexibility: 0.6,
                 ..Species::default()
             },

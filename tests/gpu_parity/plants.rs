@@ -2,13 +2,14 @@
 
 use libtest_mimic::Failed;
 use sward::base::philox::philox2x32;
+use sward::field::blade_table::Spacing;
 use sward::field::{Field, WindNow, wind_pose};
 use sward::gpu::field_data::TileRecord;
 use sward::scene::{Solver, Wind};
 
 use super::Device;
 use super::compare::{Difference, distance, ensure, ulps};
-use super::meadows::bumpy_field;
+use super::meadows::{bumpy_field, leaning_field};
 use super::probe::{self, ROWS};
 
 const WORDS: &str = r#"
@@ -101,7 +102,10 @@ fn probed(device: &Device, tile_m: f32) -> Result<Probed, Failed> {
         tile_m,
         ..Solver::default()
     };
-    let field = bumpy_field(&solver)?;
+    probed_field(device, bumpy_field(&solver)?)
+}
+
+fn probed_field(device: &Device, field: Field) -> Result<Probed, Failed> {
     let anchor_m = f64::from(field.grid.cell_m) * 4.0;
     let wind = WindNow::at(&Wind::default(), 1234.5, anchor_m, 1.0);
     let tiles: Vec<_> = (0..field.grid.tile_count())
@@ -221,4 +225,31 @@ pub fn wind_poses_agree(device: &Device) -> Result<(), Failed> {
     nodes.check(5.3e-6)?;
     // The same sums in one shader: equal but for how they are fused, and a direction's length.
     single.check(1.9e-6 + 4.0 * f64::from(f32::EPSILON))
+}
+
+/// A table with a knee has entries at fourth powers of even steps away from the critical stiffness.
+/// A fused rounding of a plant's fraction, 6e-8, is worth most at the knee itself: the root of it,
+/// 2.4e-4 of the angle's rise over half the axis (some 4 rad), 1e-3 rad or 4e-4 m of the longest
+/// blade. Few plants lie there: one whose fraction is 1e-3 off is wrong by a 60th of that.
+pub fn poses_about_the_knee_agree(device: &Device) -> Result<(), Failed> {
+    let mut tips = Difference::new("tips about the knee", "m");
+    let probed = probed_field(device, leaning_field(&Solver::default(), [0.0, 16.0])?)?;
+    ensure(probed.field.table.log2_k.spacing != Spacing::Even, || {
+        "the table has no knee".into()
+    })?;
+    let segments = probed.field.table.segments as usize;
+    probed.each(|name, anchor, plant, rows| {
+        let Some(plant) = plant else {
+            return Ok(());
+        };
+        let bend = probed.wind.bend::<f32>(anchor, &plant);
+        let want = wind_pose(&plant, &probed.field.table, bend)[segments].to_f32();
+        let [x, y, z, _] = rows[4 + segments].map(f32::from_bits);
+        tips.add(distance([x, y, z], want), || name.to_owned());
+        Ok(())
+    })?;
+    ensure(tips.rms() <= 1e-5, || {
+        format!("tips about the knee: rms {:e} m", tips.rms())
+    })?;
+    tips.check(4e-4)
 }

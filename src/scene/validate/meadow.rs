@@ -155,5 +155,10 @@ pub(super) fn solver(key: &Key, solver: &Solver) -> Check {
         &key.field("method").field("grass_steps"),
         solver.method.grass_steps,
         &limits::GRASS_STEPS,
+    )?;
+    within_each(
+        &key.field("blade_table"),
+        &solver.blade_table,
+        &limits::BLADE_TABLE,
     )
 }
