@@ -115,51 +115,17 @@ fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, layi
     return pushed;
 }
 
-// e^(−x), as in the twin.
-fn decay(x: f32) -> f32 {
-    let y = x * 0.125;
-    let inverse = 1.0 + y * (1.0 + y * 0.5 * (1.0 + y * (1.0 / 3.0) * (1.0 + y * 0.25)));
-    let eighth = 1.0 / inverse;
-    let quarter = eighth * eighth;
-    let half = quarter * quarter;
-    return half * half;
-}
-
-// Turns every hinge so that the extension of its bend spring loses a share. Twin:
-// src/sim/springs/hinge.rs.
-fn turn_hinges(share: f32) {
+// `rate` is κΔt.
+fn bend_springs(rate: f32) {
+    let twice_a = 2.0 * rate / (1.0 + 2.0 * rate);
     for (var j = 0u; j + 1u < field.segments; j++) {
         let rest = length(wind_nodes[j + 2u] - wind_nodes[j]);
-        let below = nodes[j + 1u] - nodes[j];
-        let above = nodes[j + 2u] - nodes[j + 1u];
-        let b = length(below);
-        let a = length(above);
-        let chord = length(nodes[j + 2u] - nodes[j]);
-        let wanted = clamp(chord - share * (chord - rest), abs(b - a), b + a);
-        let product = 2.0 * b * a;
-        if product <= 0.0 {
-            continue;
-        }
-        let cosine = clamp((wanted * wanted - b * b - a * a) / product, -1.0, 1.0);
-        let along = unit_or(below, UP);
-        let start = unit_or(above, along);
-        let sideways = unit_or(start - along * dot(start, along), across(along));
-        let end = along * cosine + sideways * sqrt(max(1.0 - cosine * cosine, 0.0));
-        turn_above(j + 1u, start, end);
-    }
-}
-
-// Turns the nodes after a hinge about it, by the shortest turn from one unit vector to another.
-fn turn_above(hinge: u32, start: vec3f, end: vec3f) {
-    let sum = start + end;
-    let squared = dot(sum, sum);
-    if squared < 1e-12 {
-        return;
-    }
-    for (var j = hinge + 1u; j <= field.segments; j++) {
-        let x = nodes[j] - nodes[hinge];
-        let turned = x - sum * (2.0 * dot(x, sum) / squared) + end * (2.0 * dot(x, start));
-        nodes[j] = nodes[hinge] + turned;
+        let across = nodes[j + 2u] - nodes[j];
+        let correction = unit_or(across, UP) * (twice_a * (length(across) - rest));
+        // The root is pinned: it has no responsibility, its partner has all of it.
+        let lower = select(0.5, 0.0, j == 0u);
+        nodes[j] += correction * lower;
+        nodes[j + 2u] -= correction * (1.0 - lower);
     }
 }
 
@@ -208,7 +174,7 @@ fn respond(tile: TileRecord, reach: f32, sweeps: u32, length: f32) -> u32 {
                 if pushed == 0u {
                     break;
                 }
-                turn_hinges(1.0 - decay(tick.bend / f32(sweeps)));
+                bend_springs(tick.bend / f32(sweeps));
                 continue;
             }
             keep_above_ground(tile);

@@ -7,9 +7,8 @@
 //!
 //! Springs (O09 eq. 6-7, responsibilities r₁ + r₂ = 1): structural ones are replaced by lengths
 //! from root to tip, which hold exactly after one pass; bend springs join every second node, rest
-//! at the wind pose's distance, and act once per sweep, before the rounds, by turning what is above
-//! their hinge ([`hinge`]). An extension loses the share 1 − e^(−2κΔt) of a sweep's Δt, which is the
-//! same however time is cut, instead of k·Δt, which is
+//! at the wind pose's distance, and act once per sweep, before the rounds. A node moves by
+//! r·2a·(‖l‖ − l₀) with a = κΔt/(1 + 2κΔt), which acts alike at any Δt, instead of k·Δt, which does
 //! not. Springs act only on plants pushed in this sub-step: one that a resting body merely holds
 //! stays as it is, so nothing trembles. WGSL twin: `shaders/relax.wgsl`.
 
@@ -20,12 +19,12 @@ use crate::scene::method::{Collide, Springs};
 use crate::terrain::HeightGrid;
 
 use super::contact::Touch;
-use super::springs::{LiteralBlade, hinge, relax_blade};
+use super::springs::{self, LiteralBlade, relax_blade};
 
 /// What the kernel needs besides the plant.
 #[derive(Clone, Copy, Debug)]
 pub struct RelaxSettings<R> {
-    /// 2κΔt of the bend springs over a whole sub-step.
+    /// κΔt of the bend springs over a whole sub-step.
     pub bend: R,
     /// The printed springs, where the method asks for them.
     pub literal: Option<LiteralBlade<R>>,
@@ -40,7 +39,7 @@ impl<R: Real> RelaxSettings<R> {
     pub fn new(solver: &crate::scene::Solver) -> Self {
         let rate_step = f64::from(solver.spring_rate_per_s) * solver.substep_s;
         Self {
-            bend: R::of(2.0 * rate_step),
+            bend: R::of(rate_step),
             literal: (solver.method.springs == Springs::Literal)
                 .then(|| LiteralBlade::new(rate_step, solver.segments as usize)),
             fewest_rounds: solver.rounds[0],
@@ -103,9 +102,8 @@ pub fn respond<R: Real>(
             rounds_used = rounds_used.max(1);
             continue;
         }
-        let share = R::ONE - decay(settings.bend / R::of(f64::from(sweeps)));
-        let last = place.segments + 1;
-        hinge::turn(&place.wind[..last], &mut nodes[..last], share);
+        let rate = settings.bend / R::of(f64::from(sweeps));
+        bend_springs(nodes, place, rate);
         for round in 1..=settings.most_rounds {
             follow_pushed(nodes, pushed, place);
             pushed = lay_out(nodes, faces, &bodies, place);
@@ -189,17 +187,19 @@ pub(super) fn across<R: Real>(n: Vec3<R>) -> Vec3<R> {
     (axis - n * n.dot(axis)).unit_or(Vec3::UP)
 }
 
-/// e^(−x) for x ≥ 0, from its inverse's first terms at x/8: within 3e-6 up to x = 1, falling and
-/// between 0 and 1 for any x.
-pub fn decay<R: Real>(x: R) -> R {
-    let y = x * R::of(0.125);
-    let inverse = R::ONE
-        + y * (R::ONE
-            + y * R::of(0.5) * (R::ONE + y * R::of(1.0 / 3.0) * (R::ONE + y * R::of(0.25))));
-    let eighth = R::ONE / inverse;
-    let quarter = eighth * eighth;
-    let half = quarter * quarter;
-    half * half
+/// `rate` is κΔt.
+fn bend_springs<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, rate: R) {
+    let twice_a = R::of(2.0) * rate / (R::ONE + R::of(2.0) * rate);
+    for j in 0..place.segments.saturating_sub(1) {
+        let rest = (place.wind[j + 2] - place.wind[j]).length();
+        let across = nodes[j + 2] - nodes[j];
+        let length = across.length();
+        let direction = across.unit_or(Vec3::UP);
+        let correction = direction * (twice_a * (length - rest));
+        let [lower, upper] = springs::shares([j == 0, false]).map(R::of);
+        nodes[j] += correction * lower;
+        nodes[j + 2] -= correction * upper;
+    }
 }
 
 /// Structural springs from tip to root: a node below a pushed one follows it to the segment's
