@@ -159,7 +159,7 @@ impl Judge {
                 let peak = counters.state_bytes_peak as f64;
                 between("most grass state", peak, None, Some(*at_most), "bytes")
             }
-            Expectation::StateHash { is } => state_hash(meadow, engine, is),
+            Expectation::StateHash { is } => state_hash(engine, is),
             Expectation::Lean { at_s, .. }
             | Expectation::Offset { at_s, .. }
             | Expectation::BodyNear { at_s, .. }
@@ -369,9 +369,9 @@ fn imprint(
     })
 }
 
-fn state_hash(meadow: &Meadow, engine: &Engine, is: &str) -> Verdict {
+fn state_hash(engine: &Engine, is: &str) -> Verdict {
     let what = format!("the state hash is {is}");
-    match engine.state_hash(meadow) {
+    match engine.state_hash() {
         Some(hash) => {
             let hash = format!("{hash:016x}");
             Verdict {
