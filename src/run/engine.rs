@@ -207,6 +207,16 @@ impl Engine {
         }
     }
 
+    /// Plants pushed in the last sub-step and the most rounds one of them took; `None` for an
+    /// engine that does not say.
+    pub fn response(&self) -> Option<(u64, u32)> {
+        match self {
+            Self::Cpu(grass) => Some((grass.pushed, grass.rounds)),
+            Self::Reference(grass) => Some((grass.pushed, grass.rounds)),
+            Self::Gpu(_) => None,
+        }
+    }
+
     /// Total milliseconds spent so far per pass, by the pass's name. Empty for the gpu engine,
     /// whose times come late: see [`Engine::device_pass_ms`].
     pub fn pass_ms(&self) -> Vec<(&'static str, f64)> {

@@ -30,6 +30,7 @@ pub struct Checkpoint<R: Real> {
     script: ScriptState,
     slabs: Vec<Option<Arc<Slab<R>>>>,
     pushed: u64,
+    rounds: u32,
     rounds_peak: u32,
     times: PassTimes,
     state_hash: StateHash,
@@ -48,6 +49,7 @@ impl<R: Real> Checkpoint<R> {
             script: meadow.script_state(),
             slabs: grass.slabs().to_vec(),
             pushed: grass.pushed,
+            rounds: grass.rounds,
             rounds_peak: grass.rounds_peak,
             times: grass.times,
             state_hash: grass.state_hash,
@@ -65,6 +67,7 @@ impl<R: Real> Checkpoint<R> {
         meadow.set_script_state(self.script.clone());
         grass.set_slabs(self.slabs.clone());
         grass.pushed = self.pushed;
+        grass.rounds = self.rounds;
         grass.rounds_peak = self.rounds_peak;
         grass.times = self.times;
         grass.state_hash = self.state_hash;

@@ -37,7 +37,8 @@ pub struct Grass<R: Real> {
     touched: Vec<Vec<Touched>>,
     /// Plants that were pushed in the last sub-step.
     pub pushed: u64,
-    /// Most rounds any plant took since the start.
+    /// Most rounds any plant took in the last sub-step, and since the start.
+    pub rounds: u32,
     pub rounds_peak: u32,
     pub times: PassTimes,
     /// Kept by whoever asks for it, see [`Grass::chain_hash`].
@@ -81,6 +82,7 @@ impl<R: Real> Grass<R> {
             grown: Vec::new(),
             touched: Vec::new(),
             pushed: 0,
+            rounds: 0,
             rounds_peak: 0,
             times: PassTimes::default(),
             state_hash: StateHash::default(),
@@ -177,8 +179,8 @@ impl<R: Real> Grass<R> {
             self.slabs[tile.slab as usize] = Some(slab);
         }
         self.pushed = results.iter().map(|r| r.0).sum();
-        let rounds = results.iter().map(|r| r.1).max().unwrap_or(0);
-        self.rounds_peak = self.rounds_peak.max(rounds);
+        self.rounds = results.iter().map(|r| r.1).max().unwrap_or(0);
+        self.rounds_peak = self.rounds_peak.max(self.rounds);
         if meadow.scene.solver.method.recovery == Recovery::Literal {
             self.fade_literally(meadow);
         }

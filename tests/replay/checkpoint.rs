@@ -1,9 +1,7 @@
 //! Checkpoints and the state hash on whole scenes of the cpu engine.
 
-#![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
-
 use sward::run::Engine;
-use sward::scene::{Action, LoadedScene, parse_scene};
+use sward::scene::{Action, LoadedScene, parse_scene, parse_value};
 use sward::sim::{Checkpoint, Grass, Meadow, StateHash, tick};
 
 /// A vehicle drives through balls and a pile of boxes while the script goes on and the wind turns.
@@ -22,15 +20,15 @@ const BUSY: &str = r#"(
          above_ground: true),
         (name: "high", shape: Box(size_m: (0.3, 0.3, 0.3)), position_m: (0.15, 0.6, -0.5),
          above_ground: true),
-        (name: "sweep", shape: Capsule(radius_m: 0.05, height_m: 0.6), above_ground: true,
+        (name: "sweep", shape: Capsule(radius_m: 0.05, length_m: 0.6), above_ground: true,
          motion: Path(repeat: true, waypoints: [(at_s: 0, position_m: (1.5, 0.3, 1)),
          (at_s: 1, position_m: (2.5, 0.3, 1.5)), (at_s: 2, position_m: (1.5, 0.3, 1))])),
     ],
     script: [
         (at_s: 0.1, action: Drive(body: "car", engine_n: 500)),
-        (at_s: 0.9, action: SetWind((strength: 0.3, direction_deg: 120))),
-        (at_s: 1.3, action: Spawn((name: "late", shape: Cylinder(radius_m: 0.2, height_m: 0.3),
-         position_m: (-1, 1.0, 1)))),
+        (at_s: 0.9, action: SetWind(strength: 0.3, direction_deg: 120)),
+        (at_s: 1.3, action: Spawn(name: "late", shape: Cylinder(radius_m: 0.2, height_m: 0.3),
+         position_m: (-1, 1.0, 1))),
         (at_s: 1.6, action: Remove(body: "ball")),
         (at_s: 1.8, action: Impulse(body: "high", impulse_kg_m_per_s: (3, 20, 0))),
     ],
@@ -88,9 +86,9 @@ fn a_restored_collision_goes_on_with_the_same_bits() {
 fn a_restored_past_can_take_another_way() {
     let loaded = busy();
     let act = |meadow: &mut Meadow| {
-        let spawn = r#"(name: "other", shape: Capsule(radius_m: 0.1, height_m: 0.3),
+        let spawn = r#"(name: "other", shape: Capsule(radius_m: 0.1, length_m: 0.3),
             position_m: (-0.4, 0.6, 0.2))"#;
-        let body: sward::scene::Body = ron::from_str(spawn).expect("a body");
+        let body: sward::scene::Body = parse_value("other", spawn).expect("a body");
         meadow
             .act(&Action::Spawn(Box::new(body)))
             .expect("a free name");
