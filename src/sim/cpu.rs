@@ -18,7 +18,7 @@ use super::collide;
 use super::contact::Touch;
 use super::depth_cube::{COVER_MARGIN_M, DepthCube};
 use super::meadow::Meadow;
-use super::recover::{Fading, fade_literally, recovering_pose};
+use super::recover::{Fading, fade_literally, is_back, recovering_pose};
 use super::relax::{self, Place, RelaxSettings};
 use super::slab::Slab;
 use super::solid::Solid;
@@ -379,6 +379,12 @@ fn respond<R: Real>(
             segments,
             length: segment_length(&plant, segments),
         };
+        let age = meadow.work.now - slab.touched_at[place as usize];
+        // What is back in the wind pose has no memory of faces, whenever its tile gave its slab
+        // back.
+        if is_back(age, meadow.step_over_t() as f32) {
+            slab.faces[first..first + segments].fill(0);
+        }
         let rounds = relax::respond(
             &mut pose,
             &mut slab.faces[first..first + segments],

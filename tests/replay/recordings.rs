@@ -167,8 +167,7 @@ fn a_malformed_recording_is_an_error_with_its_key() {
             "whole number",
         ),
         (
-            text.replace("substep_s: 0.0076923076923076923", "substep_s: 7")
-                .replace("substep_s: 0.007692307692307693", "substep_s: 7"),
+            text.replace(&format!("substep_s: {}", 1.0 / 130.0), "substep_s: 7"),
             ": substep_s: ",
             "0.0001 to",
         ),
