@@ -49,6 +49,14 @@ impl Default for RunOptions {
     }
 }
 
+impl RunOptions {
+    /// True if sub-steps are other ones than those of the scene as it is written.
+    fn changes_the_run(&self) -> bool {
+        let settings = self.substep_s.is_some() || self.seed.is_some() || self.method.is_some();
+        settings || !self.inputs.is_empty()
+    }
+}
+
 /// What a scenario came to.
 pub struct Outcome {
     pub name: String,
@@ -225,6 +233,7 @@ pub fn run_watched(
     // A millionth of a sub-step forgives the rounding of the division.
     let scene_ticks = || (scene.duration_s / substep_s + 1e-6) as u32;
     let ticks = options.ticks.unwrap_or_else(scene_ticks);
+    let as_written = ticks == scene_ticks() && !options.changes_the_run();
     let duration_s = match options.ticks {
         Some(ticks) => f64::from(ticks) * substep_s,
         None => scene.duration_s,
@@ -289,7 +298,7 @@ pub fn run_watched(
     let wall_s = started.elapsed().as_secs_f64();
     let mut verdicts: Vec<Verdict> = judges
         .into_iter()
-        .map(|judge| judge.finish(&meadow, &engine, &watch))
+        .map(|judge| judge.finish(&meadow, &engine, &watch, as_written))
         .collect();
     verdicts.extend(exceeded_limits(&meadow, &watch));
     let mut pass_ms = passes.median_ms();
