@@ -31,7 +31,12 @@ impl Recorder {
     ///
     /// A run that is too long.
     pub fn new(loaded: &LoadedScene, options: &RunOptions) -> Result<Self, TooLong> {
-        let substep_s = options.substep_s.unwrap_or(loaded.scene.solver.substep_s);
+        let mut solver = loaded.scene.solver.clone();
+        solver.substep_s = options.substep_s.unwrap_or(solver.substep_s);
+        if let Some(method) = options.method {
+            method.apply(&mut solver);
+        }
+        let substep_s = solver.substep_s;
         let ticks = options
             .ticks
             .map_or_else(|| (loaded.scene.duration_s / substep_s).ceil(), f64::from);
