@@ -204,12 +204,14 @@ fn relax(
     var walk = walk_before(tile, plant, state[row].x);
     nodes[0] = walk.node;
     wind_nodes[0] = walk.wind;
+    // What is back in the wind pose has no memory of faces, whenever its tile gave its slab back.
+    let is_back = is_back(tick.now - state[row].x);
     for (var j = 0u; j < field.segments; j++) {
         let stored = state[row + 1u + j];
         walk_up(&walk, plant, j, bitcast<vec3f>(stored.xyz));
         nodes[j + 1u] = walk.node;
         wind_nodes[j + 1u] = walk.wind;
-        faces[j] = stored.w;
+        faces[j] = select(stored.w, 0u, is_back);
     }
     let rounds = respond(tile, plant.height_m, entry.sweeps, walk.length);
     atomicMax(&touched[1], rounds);

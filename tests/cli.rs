@@ -163,8 +163,8 @@ fn shipped_scenes_are_known_by_name() {
     ]);
     assert!(String::from_utf8_lossy(&output.stdout).contains("still: "));
     let rows = std::fs::read_to_string(&trace).expect("the trace was written");
-    // Two seconds at 15 Hz and the head.
-    assert_eq!(rows.lines().count(), 31);
+    // Two seconds of 120 sub-steps and the head.
+    assert_eq!(rows.lines().count(), 241);
 }
 
 #[test]

@@ -8,6 +8,7 @@ use sward::base::{Real, Vec3};
 use sward::run::Timeline;
 use sward::scene::{LoadedScene, parse_scene};
 use sward::sim::measure::{self, Standing};
+use sward::sim::state_hash::state_hash;
 use sward::sim::{Grass, Meadow, tick};
 
 /// A ball rolls over four tiles' common corner while a box falls beside it.
@@ -43,7 +44,7 @@ fn run<R: Real>(loaded: &LoadedScene, ticks: u32) -> (Meadow, Grass<R>) {
 fn hash_after(loaded: &LoadedScene, ticks: u32) -> u64 {
     let (meadow, grass) = run::<f32>(loaded, ticks);
     assert!(!meadow.tiles.is_empty(), "an empty state proves nothing");
-    measure::state_hash(&meadow, &grass)
+    state_hash(&meadow, &grass)
 }
 
 /// Every touched plant by the bits of its root.
@@ -68,7 +69,7 @@ fn every_frame_rate_leaves_the_same_bits() {
                 tick(&mut meadow, &mut grass).expect("a tick");
             }
         }
-        measure::state_hash(&meadow, &grass)
+        state_hash(&meadow, &grass)
     };
     let at_60 = at_rate(60.0);
     for hz in [15.0, 30.0, 120.0, 1000.0] {

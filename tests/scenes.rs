@@ -1,6 +1,9 @@
 //! Every shipped scene as a test of its own, on the processor and on the graphics device, and a
 //! scene with real data. Trials on the device are ignored without an adapter, unless
 //! `SWARD_REQUIRE_GPU=1`; the one with real data is ignored unless `SWARD_DATA` names its folder.
+//!
+//! Each scene pins the hash of its state. `SWARD_MINT=1 cargo test --release --test scenes cpu::`
+//! writes the hashes of now into the scenes; the README says when that is right.
 
 #![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
 
@@ -11,11 +14,14 @@ use std::time::{Duration, Instant};
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use sward::gpu::Gpu;
-use sward::run::{Device, Outcome, check_loaded};
+use sward::run::{Device, Outcome, RunOptions, check_loaded, run_scene};
 use sward::scene::{load_scene, parse_scene};
 
 /// Names of trials, and how long they took.
 type Times = Arc<Mutex<Vec<(Duration, String)>>>;
+
+/// What stands before the hash in a scene.
+const PIN: &str = "StateHash(is: \"";
 
 /// Trials whose times are told at the end.
 const SLOWEST: usize = 10;
@@ -111,8 +117,22 @@ fn trial(
 }
 
 fn run_file(scene: &Path, device: &Device) -> Result<(), Failed> {
+    if env::var_os("SWARD_MINT").is_some_and(|value| value == "1") {
+        mint(scene)?;
+    }
     let outcome = check_loaded(&load_scene(scene, &[])?, device)?;
     sound(&outcome)
+}
+
+/// Writes the hash of a run into the scene's file, where its old one stands.
+fn mint(scene: &Path) -> Result<(), Failed> {
+    let loaded = load_scene(scene, &[])?;
+    let outcome = run_scene(&loaded, &RunOptions::default(), &Device::Processor, |_| {})?;
+    let hash = outcome.engine.state_hash().ok_or("no hash")?;
+    let (before, rest) = loaded.source.split_once(PIN).ok_or("no pinned hash")?;
+    let (_, after) = rest.split_once('"').ok_or("no end of the hash")?;
+    std::fs::write(scene, format!("{before}{PIN}{hash:016x}\"{after}"))?;
+    Ok(())
 }
 
 fn spot_on_jacksboro(data: Option<PathBuf>) -> Result<(), Failed> {

@@ -32,6 +32,11 @@ fn offset_left(age: u32) -> f32 {
     return t * t * t;
 }
 
+// Whether nothing is left of an offset. Half a sub-step forgives rounding.
+fn is_back(age: u32) -> bool {
+    return 1.0 - f32(age) * tick.step_over_t < 0.5 * tick.step_over_t;
+}
+
 // At the root of a plant touched at a tick (0: never), as it is now.
 fn walk_from_root(tile: TileRecord, plant: Plant, touched_at: u32) -> Walk {
     var walk: Walk;

@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
-use super::commands::{bench, blade_shape, list, render, run, view};
+use super::commands::{bench, blade_shape, list, render, replay, run, view};
 
 /// Responsive grass: bodies press real imprints into a meadow.
 ///
@@ -20,13 +20,14 @@ pub struct Cli {
 }
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 all well; 1 an expectation failed or a limit was exceeded; 2 usage; 3 a scene or \
-asset is invalid; 4 a needed adapter or feature is missing; 5 internal error.";
+Exit codes: 0 all well; 1 an expectation failed, a replay differed or a limit was exceeded; 2 \
+usage; 3 a scene, recording or asset is invalid; 4 a needed adapter or feature is missing; 5 internal error.";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
     View(view::Arguments),
     Run(run::Arguments),
+    Replay(replay::Arguments),
     Render(render::Arguments),
     Bench(bench::Arguments),
     BladeShape(blade_shape::Arguments),

@@ -1,5 +1,6 @@
 //! Floats, small maths, random numbers, statistics: nothing that knows of grass.
 
+pub mod hash;
 pub mod philox;
 pub mod pose;
 pub mod real;
@@ -7,6 +8,7 @@ pub mod statistics;
 pub mod trig;
 pub mod vec3;
 
+pub use hash::Hash64;
 pub use pose::{Pose, Quat};
 pub use real::Real;
 pub use vec3::{Vec3, vec3};

@@ -15,6 +15,7 @@ use super::path::Path;
 use super::vehicle::{Build, Vehicle};
 
 /// A body that is in the world.
+#[derive(Clone)]
 pub(super) struct Actor {
     /// Rank of its name, see [`super::Link::body`].
     pub id: u32,
@@ -28,6 +29,7 @@ pub(super) struct Actor {
 }
 
 /// What moves a body.
+#[derive(Clone)]
 pub(super) enum Control {
     Free,
     Fixed,
@@ -35,6 +37,7 @@ pub(super) enum Control {
 }
 
 /// A rigid piece and where the last sub-step took it.
+#[derive(Clone)]
 pub(super) struct Piece {
     /// Index into the shape library.
     pub shape: u32,

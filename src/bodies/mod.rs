@@ -16,6 +16,7 @@ mod library;
 mod link;
 mod path;
 pub mod shape;
+mod snapshot;
 mod solids;
 mod true_mesh;
 mod vehicle;
@@ -25,6 +26,7 @@ pub use error::{BodyError, ShapeError};
 pub use frame::turn_of_degrees;
 pub use link::Link;
 pub use shape::{ConvexPart, DrawMesh, RigidShape, Solid};
+pub use snapshot::BodiesState;
 pub use true_mesh::{Nearest, TrueMesh};
 pub use world::{Bodies, BodyInfo, RayHit};
 

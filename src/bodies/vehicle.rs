@@ -139,6 +139,7 @@ impl Controls {
 }
 
 /// A vehicle in the world.
+#[derive(Clone)]
 pub(super) struct Vehicle {
     rays: DynamicRayCastVehicleController,
     controls: Controls,

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rapier3d::math::Vector;
 use rapier3d::prelude::{ColliderHandle, PhysicsWorld, QueryFilter, Ray};
 
-use crate::base::{Pose, Vec3};
+use crate::base::{Hash64, Pose, Vec3};
 use crate::scene::assets::Assets;
 use crate::scene::{Action, Scene};
 use crate::terrain::HeightGrid;
@@ -38,7 +38,7 @@ pub struct Bodies {
     /// Rank of each name that the scene knows, then names dropped later.
     pub(super) ids: BTreeMap<String, u32>,
     pub(super) quarantined: Vec<String>,
-    links: Vec<Link>,
+    pub(super) links: Vec<Link>,
 }
 
 /// What there is to say of a body.
@@ -190,26 +190,27 @@ impl Bodies {
         })
     }
 
-    /// FNV-1a over the bits of every pose and velocity, by name: equal runs have equal hashes.
+    /// A hash over the bits of every pose and velocity, by name: equal runs have equal hashes.
     pub fn hash(&self) -> u64 {
-        let mut hash = Fnv1a::default();
+        let mut hash = Hash64::default();
         for (name, actor) in &self.actors {
             hash.bytes(name.as_bytes());
             if let Some(body) = self.physics.bodies.get(actor.handle) {
-                for v in [body.translation(), body.linvel(), body.angvel()] {
-                    hash.vector(v);
-                }
                 let q = body.rotation();
-                hash.floats(&[q.x, q.y, q.z, q.w]);
+                let vectors = [body.translation(), body.linvel(), body.angvel()];
+                let floats = vectors.into_iter().flat_map(|v| [v.x, v.y, v.z]);
+                for x in floats.chain([q.x, q.y, q.z, q.w]) {
+                    hash.word(u64::from(x.to_bits()));
+                }
             }
             for piece in &actor.pieces {
                 let place = piece.to.place.to_f64();
                 for c in piece.to.turn.to_array().iter().chain(&place) {
-                    hash.bytes(&c.to_bits().to_le_bytes());
+                    hash.word(c.to_bits());
                 }
             }
         }
-        hash.0
+        hash.value()
     }
 
     /// Makes queries and links agree with the bodies as they are now. A step of no time is how
@@ -349,31 +350,4 @@ fn ids(scene: &Scene) -> BTreeMap<String, u32> {
     let present = scene.bodies.iter().map(|body| &body.name);
     let names: BTreeSet<&String> = present.chain(spawned).collect();
     names.into_iter().cloned().zip(0..).collect()
-}
-
-/// Fowler, Noll and Vo's hash, 64 bits.
-struct Fnv1a(u64);
-
-impl Default for Fnv1a {
-    fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Fnv1a {
-    fn bytes(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-
-    fn floats(&mut self, values: &[f32]) {
-        for value in values {
-            self.bytes(&value.to_bits().to_le_bytes());
-        }
-    }
-
-    fn vector(&mut self, v: Vector) {
-        self.floats(&[v.x, v.y, v.z]);
-    }
 }

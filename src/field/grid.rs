@@ -38,6 +38,17 @@ pub struct FieldGrid {
     pub one_more: u32,
 }
 
+/// Which plant of the field a place of a tile stands for, whatever the tile's size.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct SeedPlace {
+    /// Seeding cell.
+    pub cell: [u32; 2],
+    /// Which of the cell's two triangles.
+    pub half: u32,
+    /// Number of the plant on its triangle.
+    pub index: u32,
+}
+
 /// Why a ground cannot be divided.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GridError {
@@ -142,6 +153,28 @@ impl FieldGrid {
     /// Most plants of a tile, and the places of a slab.
     pub fn plants_per_tile(&self) -> u32 {
         self.triangles_per_tile() * self.plants_per_triangle()
+    }
+
+    /// The seed at a place of a tile's order, which takes one plant of every triangle in turn, so
+    /// that any prefix of it covers the tile evenly. The cell may lie beyond the field's edge.
+    pub fn seed_place(&self, tile: TileId, place: u32) -> SeedPlace {
+        let triangles = self.triangles_per_tile();
+        let (index, within) = (place / triangles, place % triangles);
+        let in_tile = [
+            (within >> 1) % self.tile_cells,
+            (within >> 1) / self.tile_cells,
+        ];
+        let first = self.first_cell(tile);
+        SeedPlace {
+            cell: [first[0] + in_tile[0], first[1] + in_tile[1]],
+            half: within & 1,
+            index,
+        }
+    }
+
+    /// The id of the triangle a seed lies on.
+    pub fn triangle(&self, seed: &SeedPlace) -> u32 {
+        ((seed.cell[1] * self.cells[0] + seed.cell[0]) << 1) | seed.half
     }
 
     pub fn tile_at(&self, column: u32, row: u32) -> TileId {

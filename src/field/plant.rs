@@ -13,7 +13,7 @@ use crate::scene::{Grass, PhiloxRounds, Species};
 use crate::terrain::HeightGrid;
 
 use super::blade_table::{BladeTable, SpeciesRange};
-use super::grid::{ANCHOR_CELLS, Anchor, FieldGrid, TileId, ground_in_anchor};
+use super::grid::{ANCHOR_CELLS, Anchor, FieldGrid, SeedPlace, TileId, ground_in_anchor};
 
 /// Most kinds of plants in one meadow.
 pub const MAX_SPECIES: usize = 8;
@@ -94,8 +94,7 @@ impl Seeds {
     }
 
     /// The plant at a place of a tile's order, or `None` where nothing grows: beyond the ground's
-    /// edge, or past a triangle's own count. The order takes one plant of every triangle in
-    /// turn, so that any prefix of it covers the tile evenly.
+    /// edge, or past a triangle's own count.
     pub fn plant(
         &self,
         grid: &FieldGrid,
@@ -104,19 +103,12 @@ impl Seeds {
         tile: TileId,
         place: u32,
     ) -> Option<Plant> {
-        let triangles = grid.triangles_per_tile();
-        let (index, within) = (place / triangles, place % triangles);
-        let half = within & 1;
-        let offset = [
-            (within >> 1) % grid.tile_cells,
-            (within >> 1) / grid.tile_cells,
-        ];
-        let first = grid.first_cell(tile);
-        let cell = [first[0] + offset[0], first[1] + offset[1]];
+        let seed = grid.seed_place(tile, place);
+        let SeedPlace { cell, half, index } = seed;
         if cell[0] >= grid.cells[0] || cell[1] >= grid.cells[1] {
             return None;
         }
-        let triangle = ((cell[1] * grid.cells[0] + cell[0]) << 1) | half;
+        let triangle = grid.triangle(&seed);
         if index >= grid.sure_plants && index >= self.plants_on(grid, triangle) {
             return None;
         }

@@ -89,7 +89,11 @@ impl Engine {
     /// An event of the script that cannot happen; what the device refuses.
     pub fn tick(&mut self, meadow: &mut Meadow) -> Result<(), TickError> {
         match self {
-            Self::Cpu(grass) => Ok(crate::sim::tick(meadow, grass)?),
+            Self::Cpu(grass) => {
+                crate::sim::tick(meadow, grass)?;
+                grass.chain_hash(meadow);
+                Ok(())
+            }
             Self::Reference(grass) => Ok(crate::sim::tick(meadow, grass)?),
             Self::Gpu(engine) => {
                 engine.state = None;
@@ -195,11 +199,21 @@ impl Engine {
         })
     }
 
-    /// The hash of the grass state, where the engine promises its bits.
-    pub fn state_hash(&self, meadow: &Meadow) -> Option<u64> {
+    /// The hash of all ticks so far, where the engine promises its bits.
+    pub fn state_hash(&self) -> Option<u64> {
         match self {
-            Self::Cpu(grass) => Some(measure::state_hash(meadow, grass)),
+            Self::Cpu(grass) => Some(grass.state_hash.value()),
             Self::Reference(_) | Self::Gpu(_) => None,
+        }
+    }
+
+    /// Plants pushed in the last sub-step and the most rounds one of them took; `None` for an
+    /// engine that does not say.
+    pub fn response(&self) -> Option<(u64, u32)> {
+        match self {
+            Self::Cpu(grass) => Some((grass.pushed, grass.rounds)),
+            Self::Reference(grass) => Some((grass.pushed, grass.rounds)),
+            Self::Gpu(_) => None,
         }
     }
 

@@ -1,6 +1,5 @@
 //! Expectations: each is measured during the run and compared with its limit.
 
-use crate::base::Real;
 use crate::gpu::GpuError;
 use crate::scene::Expectation;
 use crate::sim::Meadow;
@@ -124,7 +123,14 @@ impl Judge {
     }
 
     /// The verdict at the end of the run.
-    pub fn finish(self, meadow: &Meadow, engine: &Engine, watch: &Watch) -> Verdict {
+    /// A hash is that of the scene as it is written; `as_written` is false for other settings.
+    pub fn finish(
+        self,
+        meadow: &Meadow,
+        engine: &Engine,
+        watch: &Watch,
+        as_written: bool,
+    ) -> Verdict {
         if let Some(verdict) = self.verdict {
             return verdict;
         }
@@ -159,7 +165,7 @@ impl Judge {
                 let peak = counters.state_bytes_peak as f64;
                 between("most grass state", peak, None, Some(*at_most), "bytes")
             }
-            Expectation::StateHash { is } => state_hash(meadow, engine, is),
+            Expectation::StateHash { is } => state_hash(engine, is, as_written),
             Expectation::Lean { at_s, .. }
             | Expectation::Offset { at_s, .. }
             | Expectation::BodyNear { at_s, .. }
@@ -369,24 +375,24 @@ fn imprint(
     })
 }
 
-fn state_hash(meadow: &Meadow, engine: &Engine, is: &str) -> Verdict {
+fn state_hash(engine: &Engine, is: &str, as_written: bool) -> Verdict {
     let what = format!("the state hash is {is}");
-    match engine.state_hash(meadow) {
-        Some(hash) => {
-            let hash = format!("{hash:016x}");
-            Verdict {
-                measured: None,
-                limit: None,
-                reason: (hash != is).then(|| format!("it is {hash}")),
-                ..verdict(what, hash == is, f64::ZERO, f64::ZERO, "")
-            }
+    let none = |passed, reason| Verdict {
+        passed,
+        measured: None,
+        limit: None,
+        reason,
+        ..verdict(what, true, 0.0, 0.0, "")
+    };
+    match engine.state_hash().map(|hash| format!("{hash:016x}")) {
+        None => none(None, Some("only the cpu engine promises its bits".into())),
+        Some(_) if !as_written => {
+            let reason = "the run has other settings or inputs than the scene";
+            none(None, Some(reason.into()))
         }
-        None => Verdict {
-            passed: None,
-            measured: None,
-            limit: None,
-            reason: Some("only the cpu engine promises its bits".into()),
-            ..verdict(what, true, 0.0, 0.0, "")
-        },
+        Some(hash) => none(
+            Some(hash == is),
+            (hash != is).then(|| format!("it is {hash}")),
+        ),
     }
 }

@@ -10,6 +10,7 @@ pub mod judge;
 pub mod junit;
 pub mod methods;
 mod pass_times;
+pub mod recording;
 pub mod release;
 pub mod report;
 pub mod scenario;
@@ -25,6 +26,9 @@ pub use engine::{Engine, EngineChoice, GpuEngine};
 pub use exit::Exit;
 pub use judge::Verdict;
 pub use pass_times::PassTimes;
-pub use scenario::{Device, Frame, Outcome, RunError, RunOptions, run_scene};
+pub use recording::{Input, Recorder, Recording, Verifier};
+pub use scenario::{
+    Device, Frame, Outcome, RunError, RunOptions, RunWatcher, run_scene, run_watched,
+};
 pub use stage::{Stage, StageError};
 pub use timeline::Timeline;

@@ -12,6 +12,7 @@ use super::engine::Engine;
 use super::judge::{Judge, Verdict, exceeded_limits};
 use super::methods::NamedMethod;
 use super::pass_times::PassTimes;
+use super::recording::Input;
 use super::timeline::Timeline;
 use super::watch::Watch;
 
@@ -28,6 +29,10 @@ pub struct RunOptions {
     pub method: Option<&'static NamedMethod>,
     /// Runs the reference engine beside the other and compares them.
     pub against_reference: bool,
+    /// Sub-steps to run instead of the scene's duration.
+    pub ticks: Option<u32>,
+    /// What happens from outside of the scene's script, in the order of ticks.
+    pub inputs: Vec<Input>,
 }
 
 impl Default for RunOptions {
@@ -38,7 +43,17 @@ impl Default for RunOptions {
             seed: None,
             method: None,
             against_reference: false,
+            ticks: None,
+            inputs: Vec::new(),
         }
+    }
+}
+
+impl RunOptions {
+    /// True if sub-steps are other ones than those of the scene as it is written.
+    fn changes_the_run(&self) -> bool {
+        let settings = self.substep_s.is_some() || self.seed.is_some() || self.method.is_some();
+        settings || !self.inputs.is_empty()
     }
 }
 
@@ -71,8 +86,33 @@ pub struct Frame<'a> {
     /// Share of the run that is done, 0…1.
     pub done: f64,
     pub meadow: &'a Meadow,
+    pub engine: &'a Engine,
     /// This frame's measures alone.
     pub snapshot: &'a Snapshot,
+}
+
+/// Whoever follows a run from outside.
+pub trait RunWatcher {
+    /// The end of a sub-step.
+    ///
+    /// # Errors
+    ///
+    /// The engine's, where it is asked for its state; it ends the run.
+    fn tick(&mut self, _meadow: &Meadow, _engine: &mut Engine) -> Result<(), GpuError> {
+        Ok(())
+    }
+
+    /// The end of a frame.
+    fn frame(&mut self, _frame: &Frame<'_>) {}
+}
+
+/// A watcher of frames alone.
+struct EachFrame<F>(F);
+
+impl<F: FnMut(&Frame<'_>)> RunWatcher for EachFrame<F> {
+    fn frame(&mut self, frame: &Frame<'_>) {
+        (self.0)(frame);
+    }
 }
 
 /// What a run computes on.
@@ -158,7 +198,21 @@ pub fn run_scene(
     loaded: &LoadedScene,
     options: &RunOptions,
     device: &Device,
-    mut each_frame: impl FnMut(&Frame<'_>),
+    each_frame: impl FnMut(&Frame<'_>),
+) -> Result<Outcome, RunError> {
+    run_watched(loaded, options, device, &mut EachFrame(each_frame))
+}
+
+/// Runs a scene to its end while `watcher` follows every sub-step and every frame.
+///
+/// # Errors
+///
+/// As for [`run_scene`], and what ends the watcher's interest.
+pub fn run_watched(
+    loaded: &LoadedScene,
+    options: &RunOptions,
+    device: &Device,
+    watcher: &mut dyn RunWatcher,
 ) -> Result<Outcome, RunError> {
     if !(options.hz >= 1.0 && options.hz <= 10_000.0) {
         return Err(RunError::Rate(options.hz));
@@ -175,7 +229,16 @@ pub fn run_scene(
     if let Some(method) = options.method {
         method.apply(&mut scene.solver);
     }
-    let duration_s = scene.duration_s;
+    let substep_s = scene.solver.substep_s;
+    // A millionth of a sub-step forgives the rounding of the division.
+    let scene_ticks = || (scene.duration_s / substep_s + 1e-6) as u32;
+    let ticks = options.ticks.unwrap_or_else(scene_ticks);
+    let as_written = ticks == scene_ticks() && !options.changes_the_run();
+    let duration_s = match options.ticks {
+        Some(ticks) => f64::from(ticks) * substep_s,
+        None => scene.duration_s,
+    };
+    let mut inputs = options.inputs.iter().peekable();
     let mut meadow =
         Meadow::new(scene, &loaded.assets).map_err(|error| RunError::new(name, error))?;
     let mut engine = (device.engine(&mut meadow)).map_err(|error| RunError::new(name, error))?;
@@ -192,6 +255,15 @@ pub fn run_scene(
     let started = std::time::Instant::now();
     for frame in 0..frames {
         for _ in 0..timeline.advance(1.0 / options.hz) {
+            // The last frame may reach beyond the end.
+            if meadow.ticks == ticks {
+                break;
+            }
+            while let Some(input) = inputs.next_if(|input| input.tick <= meadow.ticks) {
+                meadow
+                    .act(&input.action)
+                    .map_err(|error| RunError::new(name, error))?;
+            }
             engine
                 .tick(&mut meadow)
                 .map_err(|error| RunError::new(name, error))?;
@@ -201,6 +273,9 @@ pub fn run_scene(
                     .tick(&meadow, &mut engine)
                     .map_err(|error| RunError::new(name, error))?;
             }
+            watcher
+                .tick(&meadow, &mut engine)
+                .map_err(|error| RunError::new(name, error))?;
         }
         watch
             .frame(&meadow, &mut engine)
@@ -213,16 +288,17 @@ pub fn run_scene(
                 .frame(&meadow, &mut engine)
                 .map_err(|error| RunError::new(name, error))?;
         }
-        each_frame(&Frame {
+        watcher.frame(&Frame {
             done: (frame + 1) as f64 / frames as f64,
             meadow: &meadow,
+            engine: &engine,
             snapshot: &watch.last,
         });
     }
     let wall_s = started.elapsed().as_secs_f64();
     let mut verdicts: Vec<Verdict> = judges
         .into_iter()
-        .map(|judge| judge.finish(&meadow, &engine, &watch))
+        .map(|judge| judge.finish(&meadow, &engine, &watch, as_written))
         .collect();
     verdicts.extend(exceeded_limits(&meadow, &watch));
     let mut pass_ms = passes.median_ms();

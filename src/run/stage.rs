@@ -10,6 +10,7 @@ use crate::sim::{Meadow, MeadowError};
 use crate::terrain::ColourMap;
 
 use super::engine::{Engine, EngineChoice};
+use super::scenario::Outcome;
 use super::timeline::Timeline;
 
 /// Longest time that one displayed frame may add, in seconds: a window that was hidden does not
@@ -71,9 +72,35 @@ impl Stage {
         format: wgpu::TextureFormat,
         size: [u32; 2],
     ) -> Result<Self, StageError> {
-        let mut renderer = Renderer::new(gpu, format, size)?;
         let kernels = GrassKernels::new(gpu)?;
         let (meadow, engine) = lay_out(gpu, &kernels, loaded, choice)?;
+        Self::around(gpu, loaded, (meadow, engine, kernels), format, size)
+    }
+
+    /// Puts the end of a run on stage. Where it ran on a device, `gpu` is that device.
+    ///
+    /// # Errors
+    ///
+    /// A scene that the device cannot hold.
+    pub fn of_run(
+        gpu: &Gpu,
+        loaded: &LoadedScene,
+        outcome: Outcome,
+        format: wgpu::TextureFormat,
+        size: [u32; 2],
+    ) -> Result<Self, StageError> {
+        let running = (outcome.meadow, outcome.engine, GrassKernels::new(gpu)?);
+        Self::around(gpu, loaded, running, format, size)
+    }
+
+    fn around(
+        gpu: &Gpu,
+        loaded: &LoadedScene,
+        (meadow, engine, kernels): (Meadow, Engine, GrassKernels),
+        format: wgpu::TextureFormat,
+        size: [u32; 2],
+    ) -> Result<Self, StageError> {
+        let mut renderer = Renderer::new(gpu, format, size)?;
         show(gpu, &mut renderer, &meadow)?;
         Ok(Self {
             nodes: ActiveNodes::new(gpu)?,

@@ -39,7 +39,7 @@ pub const SCENES: &[Builtin] = builtin![
 ];
 
 /// Every asset of these scenes, by the path they give.
-const ASSETS: Embedded<'static> = Embedded(&[
+pub const ASSETS: Embedded<'static> = Embedded(&[
     (
         "assets/chair.gltf",
         include_bytes!("../../scenes/assets/chair.gltf"),

@@ -1,7 +1,6 @@
 //! What is wrong with a scene, and where.
 
-use super::limits;
-use super::positions::Position;
+use super::positions::{Position, Positions};
 
 /// A scene that cannot be used. Prints as `file:line:column: key: what is wrong`.
 #[derive(Debug, thiserror::Error)]
@@ -24,11 +23,8 @@ pub struct SceneError {
 pub enum Problem {
     #[error("the file cannot be read: {0}")]
     Unreadable(std::io::Error),
-    #[error(
-        "the file has {bytes} bytes, more than the limit of {} for a scene",
-        limits::SCENE_BYTES
-    )]
-    TooLarge { bytes: u64 },
+    #[error("the file has {bytes} bytes, more than the limit of {limit}")]
+    TooLarge { bytes: u64, limit: u64 },
     #[error("the file is no UTF-8 text; save it as UTF-8")]
     NotText,
     /// The text is no RON, or not of the shape of a scene.
@@ -89,6 +85,12 @@ impl SceneError {
             key: if key.is_empty() { "scene" } else { key }.to_owned(),
             problem,
         }
+    }
+
+    /// An error about the value of a key in a text of the scene language.
+    pub fn at_key(file: &str, source: &str, key: &str, what: String) -> Self {
+        let position = Positions::scan(source).of_key(key);
+        Self::new(file, position, key, Problem::Value(what))
     }
 
     /// An error about a file or folder as a whole.

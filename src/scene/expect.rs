@@ -67,6 +67,6 @@ pub enum Expectation {
         at_s: f64,
         at_least: f64,
     },
-    /// The hash of the grass state at the end; cpu engine only.
+    /// The hash of bodies and grass over all ticks; cpu engine only.
     StateHash { is: String },
 }

@@ -7,8 +7,10 @@ use std::path::{Path, PathBuf};
 use ron::Options;
 use ron::extensions::Extensions;
 use ron::ser::PrettyConfig;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
-use super::assets::{AssetSource, Assets, Folders, read_assets};
+use super::assets::{AssetSource, Assets, Folders, Noted, read_assets};
 use super::error::{Problem, SceneError};
 use super::limits::{SCENE_BYTES, SCENE_DEPTH};
 use super::positions::Positions;
@@ -48,7 +50,7 @@ impl LoadedScene {
 /// that cannot be used.
 pub fn load_scene(path: &Path, asset_dirs: &[PathBuf]) -> Result<LoadedScene, SceneError> {
     let file = path.display().to_string();
-    let source = read_text(path, &file)?;
+    let source = read_text(path, SCENE_BYTES)?;
     let own_folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
         _ => PathBuf::from("."),
@@ -83,6 +85,26 @@ pub fn parse_scene_with(
     assets: &dyn AssetSource,
 ) -> Result<LoadedScene, SceneError> {
     parse(name, name, source.to_owned(), assets)
+}
+
+/// Reads a value of the scene language other than a whole scene; `file` is named in errors.
+///
+/// # Errors
+/// Text that is no such value, with line, column and key.
+pub fn parse_value<T: DeserializeOwned>(file: &str, source: &str) -> Result<T, SceneError> {
+    let read = options().from_str(source);
+    read.map_err(|e| syntax::explain(file, source, &e))
+}
+
+/// Writes a value so that [`parse_value`] reads back an equal one. Long texts stay as they are.
+///
+/// # Errors
+/// None is known for what sward writes; the writer's own are passed on.
+pub fn value_to_ron<T: Serialize>(value: &T) -> Result<String, ron::Error> {
+    let config = PrettyConfig::default()
+        .struct_names(false)
+        .escape_strings(false);
+    options().to_string_pretty(value, config)
 }
 
 /// The scene files (`*.ron`) of a folder, sorted by name.
@@ -120,23 +142,28 @@ fn options() -> Options {
         .with_recursion_limit(SCENE_DEPTH)
 }
 
-fn read_text(path: &Path, file: &str) -> Result<String, SceneError> {
+/// Reads a text file of at most `limit` bytes, which is known before anything is read.
+///
+/// # Errors
+/// A file that cannot be read, is too long, or no UTF-8.
+pub fn read_text(path: &Path, limit: u64) -> Result<String, SceneError> {
+    let file = &path.display().to_string();
     let unreadable = |e| SceneError::whole(file, Problem::Unreadable(e));
     let about = fs::metadata(path).map_err(unreadable)?;
     if !about.is_file() {
         let kind = std::io::Error::other("it is no regular file");
         return Err(unreadable(kind));
     }
-    let too_large = |bytes| SceneError::whole(file, Problem::TooLarge { bytes });
-    if about.len() > SCENE_BYTES {
+    let too_large = |bytes| SceneError::whole(file, Problem::TooLarge { bytes, limit });
+    if about.len() > limit {
         return Err(too_large(about.len()));
     }
     let mut bytes = Vec::new();
     let opened = fs::File::open(path).map_err(unreadable)?;
     // The file may have grown since it was measured.
-    let read = opened.take(SCENE_BYTES + 1).read_to_end(&mut bytes);
+    let read = opened.take(limit.saturating_add(1)).read_to_end(&mut bytes);
     let length = read.map_err(unreadable)? as u64;
-    if length > SCENE_BYTES {
+    if length > limit {
         return Err(too_large(length));
     }
     String::from_utf8(bytes).map_err(|e| {
@@ -153,8 +180,8 @@ fn parse(
     assets: &dyn AssetSource,
 ) -> Result<LoadedScene, SceneError> {
     if source.len() as u64 > SCENE_BYTES {
-        let bytes = source.len() as u64;
-        return Err(SceneError::whole(file, Problem::TooLarge { bytes }));
+        let (bytes, limit) = (source.len() as u64, SCENE_BYTES);
+        return Err(SceneError::whole(file, Problem::TooLarge { bytes, limit }));
     }
     let scene: Scene = options()
         .from_str(&source)
@@ -164,7 +191,10 @@ fn parse(
     };
     let invalid = |i: Invalid| at(&i.key, Problem::Value(i.what));
     validate(&scene).map_err(invalid)?;
-    let assets = read_assets(&scene, assets).map_err(|(key, e)| at(&key, Problem::Asset(e)))?;
+    let noted = Noted::new(assets);
+    let read = read_assets(&scene, &noted);
+    let mut assets = read.map_err(|(key, e)| at(&key, Problem::Asset(e)))?;
+    assets.file_hashes = noted.hashes();
     validate_assets(&scene, &assets).map_err(invalid)?;
     Ok(LoadedScene {
         name: name.to_owned(),

@@ -30,7 +30,10 @@ pub use camera::Camera;
 pub use error::{AssetError, Problem, SceneError};
 pub use expect::Expectation;
 pub use grass::{Grass, Species};
-pub use load::{LoadedScene, load_scene, parse_scene, parse_scene_with, scene_files, to_ron};
+pub use load::{
+    LoadedScene, load_scene, parse_scene, parse_scene_with, parse_value, read_text, scene_files,
+    to_ron, value_to_ron,
+};
 pub use method::Method;
 pub use positions::Position;
 pub use schema::json_schema;

@@ -3,6 +3,7 @@
 //! A plant reads and writes nothing but its own state, so results do not depend on the number of
 //! threads, on the order of tiles, or on which slab a tile has.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
@@ -17,27 +18,31 @@ use super::collide;
 use super::contact::Touch;
 use super::depth_cube::{COVER_MARGIN_M, DepthCube};
 use super::meadow::Meadow;
-use super::recover::{Fading, fade_literally, recovering_pose};
+use super::recover::{Fading, fade_literally, is_back, recovering_pose};
 use super::relax::{self, Place, RelaxSettings};
 use super::slab::Slab;
 use super::solid::Solid;
+use super::state_hash::StateHash;
 use super::voxel_field::VoxelField;
 use super::work::{TileWork, Work};
 
 /// State and scratch of the grass in float `R`.
 #[derive(Debug, Default)]
 pub struct Grass<R: Real> {
-    /// By slab number; `None` while no tile has it.
-    slabs: Vec<Option<Box<Slab<R>>>>,
+    /// By slab number; `None` while no tile has it. Shared with checkpoints until written to.
+    slabs: Vec<Option<Arc<Slab<R>>>>,
     /// The grown solid of every part in this engine's float.
     grown: Vec<Solid<R>>,
     /// Plants found touched by the last collide pass, per tile of the work.
     touched: Vec<Vec<Touched>>,
     /// Plants that were pushed in the last sub-step.
     pub pushed: u64,
-    /// Most rounds any plant took since the start.
+    /// Most rounds any plant took in the last sub-step, and since the start.
+    pub rounds: u32,
     pub rounds_peak: u32,
     pub times: PassTimes,
+    /// Kept by whoever asks for it, see [`Grass::chain_hash`].
+    pub state_hash: StateHash,
 }
 
 /// A plant to respond: its place in the tile and the sweeps it needs, 0 if it is merely held.
@@ -48,7 +53,7 @@ struct Touched {
 }
 
 /// A tile whose touched plants respond, with its slab taken out of the pool meanwhile.
-type Job<'a, R> = (&'a TileWork, &'a [Touched], Box<Slab<R>>);
+type Job<'a, R> = (&'a TileWork, &'a [Touched], Arc<Slab<R>>);
 
 /// Time spent in each pass since the start.
 #[derive(Clone, Copy, Debug, Default)]
@@ -77,9 +82,18 @@ impl<R: Real> Grass<R> {
             grown: Vec::new(),
             touched: Vec::new(),
             pushed: 0,
+            rounds: 0,
             rounds_peak: 0,
             times: PassTimes::default(),
+            state_hash: StateHash::default(),
         }
+    }
+
+    /// Takes the tick that is done into the state hash.
+    pub fn chain_hash(&mut self, meadow: &Meadow) {
+        let mut hash = self.state_hash;
+        hash.tick(meadow, self);
+        self.state_hash = hash;
     }
 
     /// Gives woken tiles a wiped slab and frees those of tiles that rest.
@@ -92,7 +106,7 @@ impl<R: Real> Grass<R> {
         self.slabs
             .resize_with(meadow.tiles.slabs.high_water() as usize, || None);
         for &(_, slab) in &meadow.changes.woken {
-            self.slabs[slab as usize] = Some(Box::new(Slab::new(plants, segments)));
+            self.slabs[slab as usize] = Some(Arc::new(Slab::new(plants, segments)));
         }
     }
 
@@ -156,14 +170,17 @@ impl<R: Real> Grass<R> {
             .collect();
         let results: Vec<(u64, u32)> = jobs
             .par_iter_mut()
-            .map(|(tile, touched, slab)| respond(meadow, grown, tile, touched, slab, &settings))
+            .map(|(tile, touched, slab)| {
+                let slab = Arc::make_mut(slab);
+                respond(meadow, grown, tile, touched, slab, &settings)
+            })
             .collect();
         for (tile, _, slab) in jobs {
             self.slabs[tile.slab as usize] = Some(slab);
         }
         self.pushed = results.iter().map(|r| r.0).sum();
-        let rounds = results.iter().map(|r| r.1).max().unwrap_or(0);
-        self.rounds_peak = self.rounds_peak.max(rounds);
+        self.rounds = results.iter().map(|r| r.1).max().unwrap_or(0);
+        self.rounds_peak = self.rounds_peak.max(self.rounds);
         if meadow.scene.solver.method.recovery == Recovery::Literal {
             self.fade_literally(meadow);
         }
@@ -175,6 +192,7 @@ impl<R: Real> Grass<R> {
         let step_over_t = R::of(meadow.step_over_t());
         let (now, segments) = (meadow.work.now, meadow.field.table.segments as usize);
         self.slabs.par_iter_mut().flatten().for_each(|slab| {
+            let slab = Arc::make_mut(slab);
             let plants = slab
                 .touched_at
                 .iter()
@@ -185,6 +203,15 @@ impl<R: Real> Grass<R> {
                 }
             }
         });
+    }
+
+    /// Every slab by its number.
+    pub(super) fn slabs(&self) -> &[Option<Arc<Slab<R>>>] {
+        &self.slabs
+    }
+
+    pub(super) fn set_slabs(&mut self, slabs: Vec<Option<Arc<Slab<R>>>>) {
+        self.slabs = slabs;
     }
 
     /// The state of a slab in use.
@@ -352,6 +379,12 @@ fn respond<R: Real>(
             segments,
             length: segment_length(&plant, segments),
         };
+        let age = meadow.work.now - slab.touched_at[place as usize];
+        // What is back in the wind pose has no memory of faces, whenever its tile gave its slab
+        // back.
+        if is_back(age, meadow.step_over_t() as f32) {
+            slab.faces[first..first + segments].fill(0);
+        }
         let rounds = relax::respond(
             &mut pose,
             &mut slab.faces[first..first + segments],

@@ -37,10 +37,9 @@ pub struct Meadow {
     pub counters: Counters,
     /// Sub-steps done.
     pub ticks: u32,
-    wind: WindChange,
-    /// Events in the order of their times, and how many have happened.
+    /// Events in the order of their times.
     script: Vec<Event>,
-    scripted: usize,
+    script_state: ScriptState,
     /// The bodies' ways through the current sub-step.
     links: Vec<Link>,
     movers: Vec<Mover>,
@@ -57,6 +56,14 @@ pub struct Counters {
     pub plants_peak: u64,
     /// Largest number of bytes of grass state at once.
     pub state_bytes_peak: u64,
+}
+
+/// How far the script has come, and the wind it has set.
+#[derive(Clone, Debug)]
+pub struct ScriptState {
+    /// Events that have happened.
+    done: usize,
+    wind: WindChange,
 }
 
 /// The wind of now and the one before it: a change fades out and in.
@@ -107,9 +114,8 @@ impl Meadow {
             changes: Changes::default(),
             counters: Counters::default(),
             ticks: 0,
-            wind,
             script,
-            scripted: 0,
+            script_state: ScriptState { done: 0, wind },
             links: Vec::new(),
             movers: Vec::new(),
             scene,
@@ -146,11 +152,11 @@ impl Meadow {
         let now = self.time_s() + 5e-10;
         while self
             .script
-            .get(self.scripted)
+            .get(self.script_state.done)
             .is_some_and(|e| e.at_s <= now)
         {
-            let action = self.script[self.scripted].action.clone();
-            self.scripted += 1;
+            let action = self.script[self.script_state.done].action.clone();
+            self.script_state.done += 1;
             self.act(&action)?;
         }
         Ok(())
@@ -164,8 +170,9 @@ impl Meadow {
     pub fn act(&mut self, action: &Action) -> Result<(), MeadowError> {
         let now = self.time_s();
         if let Action::SetWind(wind) = action {
-            self.wind = WindChange {
-                before: std::mem::replace(&mut self.wind.now, wind.clone()),
+            let current = &mut self.script_state.wind;
+            *current = WindChange {
+                before: std::mem::replace(&mut current.now, wind.clone()),
                 now: wind.clone(),
                 since_s: now,
             };
@@ -178,6 +185,14 @@ impl Meadow {
     /// Which sub-step of the grass, from 0, the next one is within a step of the bodies.
     fn part_of_body_step(&self) -> u32 {
         self.ticks % self.scene.solver.method.grass_steps
+    }
+
+    pub(super) fn script_state(&self) -> ScriptState {
+        self.script_state.clone()
+    }
+
+    pub(super) fn set_script_state(&mut self, state: ScriptState) {
+        self.script_state = state;
     }
 
     /// Moves the bodies by one sub-step.
@@ -273,11 +288,12 @@ impl Meadow {
     /// The wind at a time; the change from one wind to the next fades out and in.
     pub fn wind_at(&self, time_s: f64) -> WindNow {
         let anchor_m = f64::from(ANCHOR_CELLS) * f64::from(self.field.grid.cell_m);
-        let faded = ((time_s - self.wind.since_s) / FADE_S).min(1.0);
+        let wind = &self.script_state.wind;
+        let faded = ((time_s - wind.since_s) / FADE_S).min(1.0);
         if faded < 0.5 {
-            WindNow::at(&self.wind.before, time_s, anchor_m, 1.0 - 2.0 * faded)
+            WindNow::at(&wind.before, time_s, anchor_m, 1.0 - 2.0 * faded)
         } else {
-            WindNow::at(&self.wind.now, time_s, anchor_m, 2.0 * faded - 1.0)
+            WindNow::at(&wind.now, time_s, anchor_m, 2.0 * faded - 1.0)
         }
     }
 

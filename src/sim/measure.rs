@@ -3,7 +3,7 @@
 //! Everything is computed in `f64` from the state that an engine hands out, against the bodies'
 //! true shapes, whatever the engine itself collided with.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
@@ -336,33 +336,4 @@ pub fn bent<R: Real>(
         }
     }
     found
-}
-
-/// A hash of the whole grass state (FNV-1a over ids, ticks and the bits of offsets), the same for
-/// any number of threads and any slabs.
-pub fn state_hash<R: Real>(meadow: &Meadow, state: &impl GrassState<R>) -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut eat = |word: u64| {
-        for byte in word.to_le_bytes() {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    };
-    eat(u64::from(meadow.ticks));
-    let tiles: BTreeMap<TileId, &TileWork> =
-        meadow.work.tiles.iter().map(|t| (t.tile, t)).collect();
-    for (id, tile) in tiles {
-        let Some(slab) = state.slab(tile.slab) else {
-            continue;
-        };
-        eat(u64::from(id));
-        for &tick in &slab.touched_at {
-            eat(u64::from(tick));
-        }
-        for offset in &slab.offsets {
-            for x in offset.to_f64() {
-                eat(x.to_bits());
-            }
-        }
-    }
-    hash
 }

@@ -1,5 +1,6 @@
 //! The passes as Rust, generic over the float, and the tick that runs them.
 
+pub mod checkpoint;
 pub mod collide;
 pub mod contact;
 pub mod cpu;
@@ -13,12 +14,15 @@ pub mod relax;
 pub mod slab;
 pub mod solid;
 pub mod springs;
+pub mod state_hash;
 pub mod tick;
 pub mod true_bodies;
 pub mod voxel_field;
 pub mod work;
 
+pub use checkpoint::Checkpoint;
 pub use cpu::Grass;
 pub use meadow::{Meadow, MeadowError};
+pub use state_hash::StateHash;
 pub use tick::tick;
 pub use work::Work;

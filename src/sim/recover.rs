@@ -46,6 +46,12 @@ pub fn offset_left<R: Real>(age: u32, step_over_t: R) -> R {
     t * t * t
 }
 
+/// Whether nothing is left of an offset, `age` ticks after the last contact. Half a sub-step
+/// forgives rounding.
+pub fn is_back(age: u32, step_over_t: f32) -> bool {
+    1.0 - age as f32 * step_over_t < 0.5 * step_over_t
+}
+
 /// Moves nodes onto the rest length of their segments, from root to tip, keeping directions
 /// (follow the leader). A segment without a direction takes the wind pose's.
 pub fn restore_lengths<R: Real>(nodes: &mut Nodes<R>, wind: &Nodes<R>, segments: usize, length: R) {

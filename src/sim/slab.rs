@@ -22,6 +22,16 @@ impl<R: Real> Slab<R> {
             faces: vec![0; plants * segments],
         }
     }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> u64 {
+        let Self {
+            touched_at,
+            offsets,
+            faces,
+        } = self;
+        (size_of_val(&touched_at[..]) + size_of_val(&offsets[..]) + size_of_val(&faces[..])) as u64
+    }
 }
 
 /// Bytes of one slab: per plant a tick, per node three floats and a face word, padded for a plant

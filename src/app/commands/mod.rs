@@ -2,9 +2,13 @@
 
 pub mod bench;
 pub mod blade_shape;
+mod bundle;
 pub mod doctor;
+mod follow;
 pub mod list;
+mod outputs;
 pub mod render;
+pub mod replay;
 pub mod run;
 mod scene_file;
 mod schema;
@@ -29,6 +33,7 @@ pub fn run(command: Option<Command>) -> Result<Exit, Failure> {
         Command::Render(arguments) => render::run(&arguments, out),
         Command::Bench(arguments) => bench::run(&arguments, out),
         Command::BladeShape(arguments) => blade_shape::run(&arguments, out),
+        Command::Replay(arguments) => replay::run(&arguments, out),
         Command::List(arguments) => list::run(&arguments, out),
         Command::Schema => schema::run(out),
         Command::Doctor => doctor::run(out),

@@ -1,13 +1,15 @@
 //! `sward run`.
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
 
+use super::bundle::{Bundle, Contents, recording_name, text_of};
+use super::follow::Follower;
+use super::outputs::{FileTrace, ResultFile, finish_trace};
 use super::scene_file;
 use crate::app::device::EngineArguments;
 use crate::app::failure::exit_of_run;
@@ -15,9 +17,10 @@ use crate::app::progress::Progress;
 use crate::app::{Failure, complain};
 use crate::run::methods::{self, METHODS, NamedMethod};
 use crate::run::report::{Adapter, Report, Scenario};
-use crate::run::trace::Trace;
-use crate::run::{Device, Exit, Frame, RunError, RunOptions, junit, run_scene, table};
-use crate::scene::limits;
+use crate::run::{
+    Device, Exit, Outcome, Recorder, RunError, RunOptions, junit, run_watched, table,
+};
+use crate::scene::{LoadedScene, limits};
 
 /// Run scenarios without a window and check their expectations
 #[derive(Args, Debug)]
@@ -50,13 +53,18 @@ pub struct Arguments {
     /// Another folder in which assets are looked up; may be repeated
     #[arg(long, value_name = "DIR")]
     assets: Vec<PathBuf>,
-    /// Write a CSV row of measures for every frame
+    /// Write a CSV row of measures for every sub-step
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
     /// Print the report as JSON
     #[arg(long)]
     json: bool,
-    /// Also write the report into this folder, as report.json and report.txt
+    /// Record the runs for `replay`: one scene into a file that ends in .recording, or any into a
+    /// folder
+    #[arg(long, value_name = "DIR|FILE")]
+    record: Option<PathBuf>,
+    /// Also write the report into this folder, as report.json and report.txt; a scenario that fails
+    /// leaves a folder of its name in it, with all it takes to see it fail again
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Also write the report as JUnit XML
@@ -78,21 +86,30 @@ fn method_names() -> PossibleValuesParser {
 /// Runs all scenes and prints the report.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
     let options = options(arguments)?;
+    let names = scene_file::distinct_names(&arguments.scenes);
+    let mut outputs = Outputs::open(arguments, &names)?;
     let device = arguments.engine.open()?;
     let adapter = device.gpu().map(Adapter::of);
     let mut report = Report::new(device.engine_name(), adapter, options.hz);
-    let mut trace = open_trace(arguments)?;
-    for scene in &arguments.scenes {
-        let scenario = run_one(scene, arguments, &options, &device, &mut trace);
+    let recordings = std::mem::take(&mut outputs.recordings);
+    for ((scene, name), recording) in arguments.scenes.iter().zip(&names).zip(recordings) {
+        let mut batch = Batch {
+            arguments,
+            options: &options,
+            device: &device,
+            trace: outputs.trace.as_mut(),
+            blank: Report {
+                scenarios: Vec::new(),
+                ..report.clone()
+            },
+        };
+        let scenario = batch.scenario(scene, name, recording);
         if let Some(error) = &scenario.error {
             complain(error);
         }
         report.scenarios.push(scenario);
     }
-    if let (Some(trace), Some(path)) = (trace, &arguments.trace) {
-        trace.finish().map_err(|e| Failure::file(path, e))?;
-    }
-    write_files(&report, arguments)?;
+    outputs.finish(&report, arguments)?;
     let printed = if arguments.json {
         print_json(&report, out)
     } else {
@@ -122,52 +139,205 @@ fn options(arguments: &Arguments) -> Result<RunOptions, Failure> {
         seed: arguments.seed,
         method: arguments.method.as_deref().and_then(methods::method),
         against_reference: arguments.against.is_some(),
+        ..RunOptions::default()
     })
 }
 
-type FileTrace = Trace<BufWriter<File>>;
-
-fn open_trace(arguments: &Arguments) -> Result<Option<FileTrace>, Failure> {
-    let Some(path) = &arguments.trace else {
-        return Ok(None);
-    };
-    let file = File::create(path).map_err(|e| Failure::file(path, e))?;
-    Ok(Some(Trace::new(BufWriter::new(file))))
+/// Every file the run is to write, opened before it.
+struct Outputs {
+    trace: Option<FileTrace>,
+    /// One per scene, where recordings are wanted.
+    recordings: Vec<Option<ResultFile>>,
+    json: Option<ResultFile>,
+    text: Option<ResultFile>,
+    junit: Option<ResultFile>,
 }
 
-/// Runs one scene; whatever goes wrong is part of the report, so that the others still run.
-fn run_one(
-    scene: &Path,
-    arguments: &Arguments,
-    options: &RunOptions,
-    device: &Device,
-    trace: &mut Option<FileTrace>,
-) -> Scenario {
-    let name = scene_file::name(scene);
-    let loaded = match scene_file::load(scene, &arguments.assets) {
-        Ok(loaded) => loaded,
-        Err(error) => return Scenario::broken(name, error.to_string(), Exit::Invalid),
-    };
-    let bar = Progress::new(&name);
-    let each_frame = |frame: &Frame<'_>| {
-        bar.set(frame.done);
-        if let Some(trace) = trace {
-            trace.frame(&name, frame);
+impl Outputs {
+    fn open(arguments: &Arguments, names: &[String]) -> Result<Self, Failure> {
+        let open = |path: Option<PathBuf>| path.as_deref().map(ResultFile::create).transpose();
+        let in_out = |file: &str| arguments.out.as_ref().map(|folder| folder.join(file));
+        Ok(Self {
+            trace: open(arguments.trace.clone())?.map(ResultFile::into_trace),
+            recordings: open_recordings(arguments, names)?,
+            json: open(in_out("report.json"))?,
+            text: open(in_out("report.txt"))?,
+            junit: open(arguments.junit.clone())?,
+        })
+    }
+
+    fn finish(self, report: &Report, arguments: &Arguments) -> Result<(), Failure> {
+        finish_trace(self.trace, arguments.trace.as_deref())?;
+        if let Some(file) = self.json {
+            let mut json = Vec::new();
+            print_json(report, &mut json)?;
+            file.write(&json)?;
         }
+        if let Some(file) = self.text {
+            let mut text = Vec::new();
+            table::write_table(report, &mut text)?;
+            file.write(&text)?;
+        }
+        match self.junit {
+            Some(file) => file.write(junit::junit(report).as_bytes()),
+            None => Ok(()),
+        }
+    }
+}
+
+fn open_recordings(
+    arguments: &Arguments,
+    names: &[String],
+) -> Result<Vec<Option<ResultFile>>, Failure> {
+    let Some(path) = &arguments.record else {
+        return Ok(names.iter().map(|_| None).collect());
     };
-    let outcome = catch_unwind(AssertUnwindSafe(|| {
-        run_scene(&loaded, options, device, each_frame).map(|outcome| Scenario::of(&outcome))
-    }));
-    drop(bar);
+    let is_file = path.extension().is_some_and(|ending| ending == "recording");
+    if is_file && names.len() > 1 {
+        let text = format!(
+            "--record {} is one file for {} scenes: give a folder",
+            path.display(),
+            names.len()
+        );
+        return Err(Failure::Usage(text));
+    }
+    let file_of = |name: &String| match is_file {
+        true => path.clone(),
+        false => path.join(recording_name(name)),
+    };
+    let files = names.iter().map(file_of);
+    files
+        .map(|file| ResultFile::create(&file).map(Some))
+        .collect()
+}
+
+/// What the scenarios of a command share.
+struct Batch<'a> {
+    arguments: &'a Arguments,
+    options: &'a RunOptions,
+    device: &'a Device,
+    trace: Option<&'a mut FileTrace>,
+    /// A report without scenarios.
+    blank: Report,
+}
+
+impl Batch<'_> {
+    /// Runs one scene; whatever goes wrong is part of the report, so that the others still run.
+    fn scenario(&mut self, scene: &Path, own_name: &str, record: Option<ResultFile>) -> Scenario {
+        let name = scene_file::name(scene);
+        let loaded = match scene_file::load(scene, &self.arguments.assets) {
+            Ok(loaded) => loaded,
+            Err(error) => return Scenario::broken(name, error.to_string(), Exit::Invalid),
+        };
+        let folder = self.arguments.out.as_ref().map(|out| out.join(own_name));
+        let bundle = folder.map(|folder| Bundle::open(folder, own_name));
+        let mut bundle = match bundle.transpose() {
+            Ok(bundle) => bundle,
+            Err(error) => return Scenario::broken(name, error.to_string(), error.exit()),
+        };
+        let recorder = match (Recorder::new(&loaded, self.options), &record) {
+            (Ok(recorder), _) if record.is_some() || bundle.is_some() => Some(recorder),
+            (Err(error), Some(_)) => {
+                return Scenario::broken(name.clone(), format!("{name}: {error}"), Exit::Usage);
+            }
+            _ => None,
+        };
+        let mut follower = Follower {
+            name: &name,
+            bar: Progress::new(&name),
+            trace: self.trace.as_deref_mut(),
+            frames: bundle.as_mut().map(|bundle| &mut bundle.trace),
+            recorder,
+            verifier: None,
+        };
+        let outcome = catch_unwind(AssertUnwindSafe(|| {
+            run_watched(&loaded, self.options, self.device, &mut follower)
+        }));
+        let recorder = follower.recorder.take();
+        drop(follower);
+        let (scenario, ended) = judged(&name, outcome);
+        let kept = Kept {
+            own_name,
+            loaded: &loaded,
+            recorder,
+        };
+        match self.keep(&kept, record, bundle, &scenario, ended) {
+            Ok(()) => scenario,
+            Err(error) => Scenario::broken(name, error.to_string(), error.exit()),
+        }
+    }
+
+    /// Writes what is to stay of a run.
+    fn keep(
+        &self,
+        kept: &Kept<'_>,
+        record: Option<ResultFile>,
+        bundle: Option<Bundle>,
+        scenario: &Scenario,
+        ended: Option<Outcome>,
+    ) -> Result<(), Failure> {
+        let recording = kept.recorder.as_ref().map(Recorder::recording);
+        if let (Some(file), Some(recording)) = (record, recording) {
+            file.write(&text_of(recording)?)?;
+        }
+        let Some(bundle) = bundle else {
+            return Ok(());
+        };
+        if scenario.passed {
+            return bundle.discard();
+        }
+        let mut report = self.blank.clone();
+        report.scenarios.push(scenario.clone());
+        let contents = Contents {
+            name: kept.own_name,
+            loaded: kept.loaded,
+            report: &report,
+            recording,
+            device: self.device,
+            asset_dirs: &self.arguments.assets,
+        };
+        let folder = bundle.fill(&contents, ended)?;
+        let (name, folder) = (&scenario.name, folder.display());
+        complain(&format!("{name} failed; see {folder}"));
+        Ok(())
+    }
+}
+
+/// What is known of a run besides its outcome.
+struct Kept<'a> {
+    /// Name of its files.
+    own_name: &'a str,
+    loaded: &'a LoadedScene,
+    recorder: Option<Recorder>,
+}
+
+/// The report of a run, and its end where it came to one.
+fn judged(
+    name: &str,
+    outcome: std::thread::Result<Result<Outcome, RunError>>,
+) -> (Scenario, Option<Outcome>) {
     match outcome {
-        Ok(Ok(scenario)) => scenario,
+        Ok(Ok(outcome)) => {
+            for body in outcome.meadow.bodies.quarantined() {
+                complain(&format!(
+                    "{name}: `{body}` was taken out: its place or motion is no finite number"
+                ));
+            }
+            (Scenario::of(&outcome), Some(outcome))
+        }
         Ok(Err(error)) => {
             let exit = exit_of_run(&error);
-            Scenario::broken(name, error.to_string(), exit)
+            (
+                Scenario::broken(name.to_owned(), error.to_string(), exit),
+                None,
+            )
         }
         Err(_) => {
             let error = format!("{name}: internal error, see the message above");
-            Scenario::broken(name, error, Exit::Internal)
+            (
+                Scenario::broken(name.to_owned(), error, Exit::Internal),
+                None,
+            )
         }
     }
 }
@@ -175,24 +345,4 @@ fn run_one(
 fn print_json(report: &Report, out: &mut impl Write) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut *out, report)?;
     writeln!(out)
-}
-
-fn write_files(report: &Report, arguments: &Arguments) -> Result<(), Failure> {
-    if let Some(folder) = &arguments.out {
-        fs::create_dir_all(folder).map_err(|e| Failure::file(folder, e))?;
-        let mut json = Vec::new();
-        print_json(report, &mut json)?;
-        write_file(&folder.join("report.json"), &json)?;
-        let mut text = Vec::new();
-        table::write_table(report, &mut text)?;
-        write_file(&folder.join("report.txt"), &text)?;
-    }
-    if let Some(file) = &arguments.junit {
-        write_file(file, junit::junit(report).as_bytes())?;
-    }
-    Ok(())
-}
-
-fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    fs::write(path, bytes).map_err(|e| Failure::file(path, e))
 }

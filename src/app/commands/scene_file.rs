@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::scene::builtin::load_builtin;
-use crate::scene::{LoadedScene, SceneError, load_scene};
+use crate::scene::assets::{AssetSource, Folders, InOrder};
+use crate::scene::builtin::{ASSETS, load_builtin};
+use crate::scene::{AssetError, LoadedScene, SceneError, load_scene};
 
 /// Reads a scene. A file goes before a built-in scene of the same name.
 ///
 /// # Errors
-///
 /// The scene's own, with file, line and key.
 pub fn load(scene: &Path, assets: &[PathBuf]) -> Result<LoadedScene, SceneError> {
     let by_name = scene.to_str().filter(|_| !scene.is_file());
@@ -16,8 +16,53 @@ pub fn load(scene: &Path, assets: &[PathBuf]) -> Result<LoadedScene, SceneError>
     built_in.unwrap_or_else(|| load_scene(scene, assets))
 }
 
+/// Reads a file that the scene of a path, or a built-in scene, has read before.
+///
+/// # Errors
+/// A file that is gone or cannot be read.
+pub fn read_asset(
+    scene: Option<&Path>,
+    assets: &[PathBuf],
+    file: &str,
+    limit: u64,
+) -> Result<Vec<u8>, AssetError> {
+    let own_folder = scene.map(|path| match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
+        _ => PathBuf::from("."),
+    });
+    let folders = Folders::new(own_folder.into_iter().chain(assets.iter().cloned()));
+    InOrder(&folders, &ASSETS).read(file, limit)
+}
+
 /// The name by which a scene is reported: the file's without folder and ending.
 pub fn name(scene: &Path) -> String {
     let stem = scene.file_stem().unwrap_or(scene.as_os_str());
     stem.to_string_lossy().into_owned()
+}
+
+/// A name of its own for each scene's files: where several have one name, the later ones get a
+/// number.
+pub fn distinct_names(scenes: &[PathBuf]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for scene in scenes {
+        let plain = name(scene);
+        let numbered = (2..).map(|number| format!("{plain}-{number}"));
+        let mut wishes = std::iter::once(plain.clone()).chain(numbered);
+        names.extend(wishes.find(|wish| !names.contains(wish)));
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_of_one_name_are_numbered() {
+        let scenes = ["a/roll.ron", "b/roll.ron", "roll", "still"].map(PathBuf::from);
+        assert_eq!(
+            distinct_names(&scenes),
+            ["roll", "roll-2", "roll-3", "still"]
+        );
+    }
 }

@@ -4,13 +4,15 @@ mod base64;
 mod gltf;
 mod gltf_buffers;
 mod height_map;
+mod noted;
 mod obj;
 mod solid;
 mod source;
 
 use std::collections::BTreeMap;
 
-pub use source::{AssetSource, Embedded, Folders};
+pub(super) use noted::Noted;
+pub use source::{AssetSource, Embedded, Folders, InOrder};
 
 use super::error::AssetError;
 use super::limits::{ASSET_BYTES, ASSET_FILES};
@@ -21,6 +23,8 @@ use super::{Action, Body, Ground, Scene, Shape};
 pub struct Assets {
     pub meshes: BTreeMap<String, TriangleMesh>,
     pub height_maps: BTreeMap<String, HeightMap>,
+    /// A hash of the bytes of every file that was read, those named by other assets included.
+    pub file_hashes: BTreeMap<String, u64>,
 }
 
 /// Triangles as a file gives them, unscaled: finite positions, valid indices, no two equal

@@ -90,6 +90,23 @@ impl AssetSource for Embedded<'_> {
     }
 }
 
+/// Two sources: what the first does not have is looked up in the second.
+#[derive(Clone, Copy)]
+pub struct InOrder<'a>(pub &'a dyn AssetSource, pub &'a dyn AssetSource);
+
+impl AssetSource for InOrder<'_> {
+    fn read(&self, file: &str, limit: u64) -> Result<Vec<u8>, AssetError> {
+        match self.0.read(file, limit) {
+            // Where neither has it, the first knows the folders that can be told.
+            Err(missing @ AssetError::NotFound { .. }) => match self.1.read(file, limit) {
+                Err(AssetError::NotFound { .. }) => Err(missing),
+                found => found,
+            },
+            found => found,
+        }
+    }
+}
+
 /// The path `file` means beside another asset, such as a buffer beside its glTF file.
 pub(super) fn beside(neighbour: &str, file: &str) -> String {
     match neighbour.rfind('/') {
