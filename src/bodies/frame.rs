@@ -1,23 +1,21 @@
 //! Between the world's f64 and rapier's f32: the one place where poses change hands.
 //!
-//! Rapier's frame has the world's axes but an origin near the bodies, which follows them in steps
-//! of [`STEP_M`]. A place within [`FARTHEST_M`] of it is rounded by at most 4e-6 m along each axis,
-//! wherever in the world it is. With bodies far apart the origin is near most of them: the others
-//! are rounded by 2⁻²⁴ of their distance from it.
+//! Rapier's frame has the world's axes, and the ground's middle as its origin unless the bodies are
+//! more than [`NEAR_M`] from it: then its origin is next to them and follows them. A place is rounded
+//! by 2⁻²⁴ of its distance from the origin, by 3.8e-6 m at most near it, wherever in the world it is.
+//! With bodies far apart the origin is next to most of them.
 
 use rapier3d::math::{Pose as RapierPose, Rotation, Vector};
 
 use crate::base::trig::{cos_turns, sin_turns};
 use crate::base::{Pose, Quat, Vec3};
 
-/// Rapier's origin lies a whole number of these from the ground's middle along each axis, so that a
-/// scene moved as a whole has the same bits.
-const STEP_M: f64 = 64.0;
-/// The origin follows once the bodies' middle is farther off than this along an axis. It is more
-/// than a step, so that bodies at the border of two do not move it to and fro.
-pub(super) const FARTHEST_M: f64 = 128.0;
+/// Along an axis on which the bodies' middle is no farther than this from the ground's, the origin is
+/// the ground's middle; it also is how far bodies may go before the origin follows.
+const NEAR_M: f64 = 64.0;
 
-/// Where rapier's origin is in the world.
+/// Where rapier's origin is in the world: a whole number of metres from the ground's middle, so that
+/// a scene moved as a whole, or by whole metres on a level ground, has the same bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Frame {
     origin: Vec3<f64>,
@@ -29,7 +27,9 @@ impl Frame {
     pub fn around(places: &[Vec3<f64>], ground_m: [f64; 2]) -> Self {
         let ground = Vec3::new(ground_m[0], 0.0, ground_m[1]);
         let middle = middle_of(places).unwrap_or(ground) - ground;
-        let steps = middle.to_f64().map(|x| (x / STEP_M).round() * STEP_M);
+        let steps = middle
+            .to_f64()
+            .map(|x| if x.abs() <= NEAR_M { 0.0 } else { x.round() });
         Self {
             origin: ground + Vec3::of(steps),
         }
@@ -39,7 +39,7 @@ impl Frame {
     pub fn is_near(&self, places: &[Vec3<f64>]) -> bool {
         middle_of(places).is_none_or(|middle| {
             let off = (middle - self.origin).to_f64();
-            off.iter().all(|x| x.abs() <= FARTHEST_M)
+            off.iter().all(|x| x.abs() <= NEAR_M)
         })
     }
 
@@ -180,8 +180,11 @@ mod tests {
                 place,
             };
             let back = frame.pose_from_rapier(&frame.pose_to_rapier(pose));
-            // Half a step from the origin at most: 32 m are rounded by 2⁻²⁴ of that.
-            assert!((back.place - place).length() <= 3f64.sqrt() * 1.91e-6, "{far}");
+            // No more than 4 m from the origin: rounded by 2⁻²² along each axis.
+            assert!(
+                (back.place - place).length() <= 3f64.sqrt() * 2.4e-7,
+                "{far}"
+            );
         }
     }
 
@@ -189,8 +192,9 @@ mod tests {
     fn the_origin_is_near_most_bodies_and_stays_until_they_leave() {
         let at = |x: f64| Vec3::of([x, 0.0, 0.0]);
         let frame = Frame::around(&[at(1000.0), at(1004.0), at(90_000.0)], [0.0; 2]);
-        assert_eq!(frame.origin, at(1024.0));
-        assert!(frame.is_near(&[at(900.0)]) && !frame.is_near(&[at(890.0)]));
+        assert_eq!(frame.origin, at(1004.0));
+        assert!(frame.is_near(&[at(941.0)]) && !frame.is_near(&[at(939.0)]));
+        assert_eq!(Frame::around(&[at(40.0)], [0.0; 2]).origin, at(0.0));
         assert_eq!(Frame::around(&[at(f64::NAN)], [7.0, 0.0]).origin, at(7.0));
     }
 }

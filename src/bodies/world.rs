@@ -378,7 +378,12 @@ fn first_places(scene: &Scene) -> Vec<Vec3<f64>> {
         Motion::Path { waypoints, .. } => waypoints.first().map(|w| w.position_m),
         Motion::Free | Motion::Thrown { .. } | Motion::Fixed => Some(body.position_m),
     };
-    scene.bodies.iter().filter_map(place).map(Vec3::of).collect()
+    scene
+        .bodies
+        .iter()
+        .filter_map(place)
+        .map(Vec3::of)
+        .collect()
 }
 
 fn physics_world() -> PhysicsWorld {

@@ -261,7 +261,10 @@ mod tests {
                 let nodes = recovering_pose(&wind, &offsets, age, &LENGTHS, 0.05);
                 // A straight blade is as long from root to tip as along its segments.
                 let length = (nodes[8] - nodes[0]).length();
-                assert!((length - 0.4).abs() < 1e-9, "{degrees}° age {age}: {length}");
+                assert!(
+                    (length - 0.4).abs() < 1e-9,
+                    "{degrees}° age {age}: {length}"
+                );
                 assert!(nodes[8].x > -1e-9, "{degrees}° age {age}: {:?}", nodes[8]);
             }
         }

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use libtest_mimic::Failed;
 use sward::run::Engine;
 use sward::scene::Collider;
 use sward::sim::measure::GrassState;
@@ -89,7 +90,9 @@ fn rest(setting: &Setting, scene: &str) -> Measured {
         restless.len(),
         before.len(),
     );
-    ensure(compared > 1000, || format!("only {compared} plants seen at rest"))?;
+    ensure(compared > 1000, || {
+        format!("only {compared} plants seen at rest")
+    })?;
     let shallow = setting.collider != Collider::Analytic || depth_m <= REST_DEPTH_M;
     let rests = largest_m <= REST_M_PER_FRAME && strain <= REST_STRAIN && shallow;
     ensure(rests, || text.clone())?;
@@ -98,7 +101,7 @@ fn rest(setting: &Setting, scene: &str) -> Measured {
 }
 
 /// Runs until no body has moved for a tenth of a second, and gives the tick since which they stand.
-fn run_until_still(rig: &mut Rig) -> Result<u32, libtest_mimic::Failed> {
+fn run_until_still(rig: &mut Rig) -> Result<u32, Failed> {
     let mut still = 0;
     while still < SECOND_TICKS / 10 {
         rig.tick()?;
@@ -117,17 +120,47 @@ fn run_until_still(rig: &mut Rig) -> Result<u32, libtest_mimic::Failed> {
 const DEGENERATE: &[(&str, &str, [f64; 3])] = &[
     ("centre of a ball", "Ball(radius_m: 0.15)", [0.0; 3]),
     ("centre of a box", "Box(size_m: (0.3, 0.3, 0.3))", [0.0; 3]),
-    ("medial axis of a box", "Box(size_m: (0.3, 0.3, 0.3))", [0.05, 0.05, 0.0]),
-    ("edge of a box", "Box(size_m: (0.3, 0.3, 0.3))", [0.15, 0.15, 0.02]),
-    ("corner of a box", "Box(size_m: (0.3, 0.3, 0.3))", [0.15, 0.15, 0.15]),
+    (
+        "medial axis of a box",
+        "Box(size_m: (0.3, 0.3, 0.3))",
+        [0.05, 0.05, 0.0],
+    ),
+    (
+        "edge of a box",
+        "Box(size_m: (0.3, 0.3, 0.3))",
+        [0.15, 0.15, 0.02],
+    ),
+    (
+        "corner of a box",
+        "Box(size_m: (0.3, 0.3, 0.3))",
+        [0.15, 0.15, 0.15],
+    ),
     // 64 texels over 0.302 m with the skin: borders lie at whole multiples from the middle.
-    ("texel border of a box", "Box(size_m: (0.3, 0.3, 0.3))", [10.0 * 0.302 / 64.0, 0.04, 0.0]),
-    ("axis of a capsule", "Capsule(radius_m: 0.1, length_m: 0.2)", [0.0, 0.03, 0.0]),
-    ("centre of a cylinder", "Cylinder(radius_m: 0.12, height_m: 0.24)", [0.0; 3]),
-    ("rim of a cylinder", "Cylinder(radius_m: 0.12, height_m: 0.24)", [0.12, 0.12, 0.0]),
+    (
+        "texel border of a box",
+        "Box(size_m: (0.3, 0.3, 0.3))",
+        [10.0 * 0.302 / 64.0, 0.04, 0.0],
+    ),
+    (
+        "axis of a capsule",
+        "Capsule(radius_m: 0.1, length_m: 0.2)",
+        [0.0, 0.03, 0.0],
+    ),
+    (
+        "centre of a cylinder",
+        "Cylinder(radius_m: 0.12, height_m: 0.24)",
+        [0.0; 3],
+    ),
+    (
+        "rim of a cylinder",
+        "Cylinder(radius_m: 0.12, height_m: 0.24)",
+        [0.12, 0.12, 0.0],
+    ),
 ];
 /// Frames over which a vertex must leave through the same face.
 const STEADY_FRAMES: u32 = 100;
+/// Frames after which blades under a fixed body have found their place.
+const SETTLED_FRAMES: u32 = 30;
 
 /// A vertex at the centre of a body, on its medial axis, an edge, a corner, a texel's border: no
 /// way out is the shortest there. Choosing anew in every frame makes the blade jump from side to
@@ -136,23 +169,36 @@ pub fn degenerate_point(setting: &Setting) -> Measured {
     let mut flips = Vec::new();
     let mut pushed = 0;
     for &(what, shape, place) in DEGENERATE {
-        let mut rig = with_vertex_at(setting, shape, place)?;
+        let (mut rig, vertex) = with_vertex_at(setting, shape, place)?;
+        // The chosen vertex from its first contact on.
         rig.ticks(FRAME_TICKS)?;
-        let mut before = faces(&mut rig)?;
-        for _ in 0..STEADY_FRAMES {
+        let first = faces(&mut rig)?;
+        let mut before = first.clone();
+        for frame in 1..=SETTLED_FRAMES + STEADY_FRAMES {
             rig.ticks(FRAME_TICKS)?;
             let now = faces(&mut rig)?;
-            let changed = now.iter().zip(&before).filter(|(now, before)| now != before);
-            let changed = changed.count();
-            if changed > 0 {
-                flips.push(format!("{what}: {changed} faces changed at tick {}", rig.meadow.ticks));
+            if frame <= STEADY_FRAMES && now.get(vertex) != first.get(vertex) {
+                flips.push(format!(
+                    "{what}: the vertex leaves through another face, frame {frame}"
+                ));
+            }
+            // Every other one once its blade has settled.
+            let changed = now
+                .iter()
+                .zip(&before)
+                .filter(|(now, before)| now != before)
+                .count();
+            if frame > SETTLED_FRAMES && changed > 0 {
+                flips.push(format!("{what}: {changed} faces changed in frame {frame}"));
             }
             before = now;
         }
         rig.look()?;
         pushed += before.iter().filter(|&&face| face != 0).count();
     }
-    ensure(pushed > 100, || format!("only {pushed} vertices were pushed"))?;
+    ensure(pushed > 100, || {
+        format!("only {pushed} vertices were pushed")
+    })?;
     ensure(flips.is_empty(), || flips.join("; "))?;
     Ok(format!(
         "{} places, {pushed} pushed vertices, no face changed in {STEADY_FRAMES} frames",
@@ -160,31 +206,45 @@ pub fn degenerate_point(setting: &Setting) -> Measured {
     ))
 }
 
-/// A fixed body placed so that the fifth node of some plant lies at `place` of the body.
-fn with_vertex_at(
-    setting: &Setting,
-    shape: &str,
-    place: [f64; 3],
-) -> Result<Rig, libtest_mimic::Failed> {
+/// A fixed body placed so that the fifth node of some plant lies at `place` of the body, and the
+/// index of that node's word in [`faces`].
+fn with_vertex_at(setting: &Setting, shape: &str, place: [f64; 3]) -> Result<(Rig, usize), Failed> {
     let scene = |body: &str| {
-        format!("(duration_s: 10, terrain: (ground: Flat(size_m: (3, 3))), {CALM}, bodies: [{body}])")
+        format!(
+            "(duration_s: 10, terrain: (ground: Flat(size_m: (3, 3))), {CALM}, bodies: [{body}])"
+        )
     };
     let mut bare = setting.rig(&scene(""))?;
     let plants = bare.engine.near(&bare.meadow, [0.1, 0.1], 0.3)?;
     let plant = plants.first().ok_or("no plant near the middle")?;
     let node = plant.nodes[5].to_f64();
     let at = [0, 1, 2].map(|a| plant.origin[a] + node[a] - place[a]);
-    setting.rig(&scene(&format!(
+    let mut rig = setting.rig(&scene(&format!(
         "(name: \"thing\", shape: {shape}, position_m: ({}, {}, {}), motion: Fixed, collider: {})",
         at[0],
         at[1],
         at[2],
         setting.collider()
-    )))
+    )))?;
+    rig.tick()?;
+    let segments = rig.meadow.scene.solver.segments as usize;
+    let per_tile = rig.meadow.field.grid.plants_per_tile() as usize;
+    let tiles = rig.meadow.work.tiles.clone();
+    for (n, tile) in tiles.iter().enumerate() {
+        let standing = rig.engine.standing(&rig.meadow, tile)?;
+        let found = standing
+            .iter()
+            .position(|p| p.root_in_world() == plant.root_in_world());
+        // Every triangle of a whole density has all its plants, so ranks are places.
+        if let Some(rank) = found {
+            return Ok((rig, (n * per_tile + rank) * segments + 4));
+        }
+    }
+    Err("the plant is in no active tile".into())
 }
 
 /// The face words of every vertex of the active tiles.
-fn faces(rig: &mut Rig) -> Result<Vec<u32>, libtest_mimic::Failed> {
+fn faces(rig: &mut Rig) -> Result<Vec<u32>, Failed> {
     let (engine, meadow) = (&rig.engine, &rig.meadow);
     let slabs = meadow.work.tiles.iter().map(|tile| tile.slab);
     Ok(match engine {
@@ -234,4 +294,3 @@ pub fn buried(setting: &Setting) -> Measured {
     rig.nothing_is_inside()?;
     Ok(text)
 }
-

@@ -28,7 +28,10 @@ fn by_tile(rig: &mut Rig) -> Result<BTreeMap<TileId, u64>, Failed> {
         hash.eat(plant.touched_at);
         plant.nodes.iter().for_each(|&node| hash.point(node));
     }
-    Ok(found.into_iter().map(|(tile, hash)| (tile, hash.0)).collect())
+    Ok(found
+        .into_iter()
+        .map(|(tile, hash)| (tile, hash.0))
+        .collect())
 }
 
 /// As many slabs of state as the scene needs, and one less. A method that writes past its pool
@@ -43,7 +46,9 @@ pub fn tiles(setting: &Setting) -> Measured {
     let mut full = setting.rig(&rolling(setting))?;
     full.meadow.tiles.slabs.lower_limit(needed);
     full.run_to(ticks, 10)?;
-    ensure(by_tile(&mut full)? == wanted, || "at the maximum something has changed".into())?;
+    ensure(by_tile(&mut full)? == wanted, || {
+        "at the maximum something has changed".into()
+    })?;
 
     let mut over = setting.rig(&rolling(setting))?;
     over.meadow.tiles.slabs.lower_limit(needed - 1);
@@ -54,7 +59,10 @@ pub fn tiles(setting: &Setting) -> Measured {
         format!("{refused} refused, {} told of", told.len())
     })?;
     let kept = by_tile(&mut over)?;
-    let same = kept.iter().filter(|(tile, bits)| wanted.get(tile) == Some(bits)).count();
+    let same = kept
+        .iter()
+        .filter(|(tile, bits)| wanted.get(tile) == Some(bits))
+        .count();
     ensure(kept.len() + 1 >= wanted.len() && same == kept.len(), || {
         format!("{same} of {} tiles have their bits", kept.len())
     })?;
@@ -68,8 +76,8 @@ pub fn tiles(setting: &Setting) -> Measured {
 /// As many bodies as a scene may have, and one more at run time.
 pub fn bodies(setting: &Setting) -> Measured {
     let side = (limits::BODIES as f64).sqrt() as usize;
-    let mut scene = parse("(terrain: (ground: Flat(size_m: (16, 16))), grass: (density_per_m2: 16))")?
-        .scene;
+    let mut scene =
+        parse("(terrain: (ground: Flat(size_m: (16, 16))), grass: (density_per_m2: 16))")?.scene;
     let ball = parse("(bodies: [(name: \"ball\", shape: Ball(radius_m: 0.05))])")?.scene;
     let ball = ball.bodies.into_iter().next().ok_or("no body")?;
     for n in 0..limits::BODIES {
@@ -85,7 +93,9 @@ pub fn bodies(setting: &Setting) -> Measured {
         Ok(_) => return Err("one body more than the maximum was accepted".into()),
         Err(error) => error.message().unwrap_or_default().to_owned(),
     };
-    ensure(told.contains("4096") && told.contains("bodies"), || told.clone())?;
+    ensure(told.contains("4096") && told.contains("bodies"), || {
+        told.clone()
+    })?;
 
     let mut rig = Rig::of_scene(setting.device, scene)?;
     rig.ticks(3)?;
@@ -96,7 +106,9 @@ pub fn bodies(setting: &Setting) -> Measured {
         Err(error) => error.to_string(),
     };
     ensure(told.contains("4096"), || told.clone())?;
-    ensure(rig.meadow.bodies.drop_body(&ball, 0.0).is_err(), || "one more was dropped".into())?;
+    ensure(rig.meadow.bodies.drop_body(&ball, 0.0).is_err(), || {
+        "one more was dropped".into()
+    })?;
     let refused = rig.meadow.bodies.refused();
     let after = (rig.meadow.bodies.hash(), rig.bits()?);
     ensure(refused == 2 && before == after, || {
@@ -104,10 +116,19 @@ pub fn bodies(setting: &Setting) -> Measured {
     })?;
     rig.ticks(2)?;
     let snapshot = rig.engine.snapshot(&rig.meadow)?;
-    ensure(snapshot.not_finite == 0 && snapshot.pushed_nodes > 1000, || {
-        format!("{} not finite, {} pushed", snapshot.not_finite, snapshot.pushed_nodes)
-    })?;
-    Ok(format!("{} bodies run; 2 more refused and counted: {told}", limits::BODIES))
+    ensure(
+        snapshot.not_finite == 0 && snapshot.pushed_nodes > 1000,
+        || {
+            format!(
+                "{} not finite, {} pushed",
+                snapshot.not_finite, snapshot.pushed_nodes
+            )
+        },
+    )?;
+    Ok(format!(
+        "{} bodies run; 2 more refused and counted: {told}",
+        limits::BODIES
+    ))
 }
 
 /// As many plants in a tile as a slab holds, and one more.
@@ -124,11 +145,17 @@ pub fn plants(setting: &Setting) -> Measured {
     let mut rig = setting.rig(&scene(4096.0))?;
     rig.run_to(6, 3)?;
     let plants = rig.meadow.counters.plants_peak;
-    ensure(plants == limits::PLANTS_PER_TILE, || format!("{plants} plants"))?;
+    ensure(plants == limits::PLANTS_PER_TILE, || {
+        format!("{plants} plants")
+    })?;
     let told = match parse(&scene(4096.5)) {
         Ok(_) => return Err("one plant more than a tile holds was accepted".into()),
         Err(error) => error.message().unwrap_or_default().to_owned(),
     };
-    ensure(told.contains("65536") || told.contains("65,536"), || told.clone())?;
-    Ok(format!("{plants} plants of one tile run; more are refused: {told}"))
+    ensure(told.contains("65536") || told.contains("65,536"), || {
+        told.clone()
+    })?;
+    Ok(format!(
+        "{plants} plants of one tile run; more are refused: {told}"
+    ))
 }

@@ -28,7 +28,14 @@ pub fn short_form(setting: &Setting) -> Measured {
 
 /// A day on the processor, ten minutes on a device.
 pub fn day(setting: &Setting) -> Measured {
-    go_round(setting, if on_device(setting) { 10 * 60 } else { 24 * 3600 })
+    go_round(
+        setting,
+        if on_device(setting) {
+            10 * 60
+        } else {
+            24 * 3600
+        },
+    )
 }
 
 fn on_device(setting: &Setting) -> bool {
@@ -45,10 +52,16 @@ fn go_round(setting: &Setting, seconds: u32) -> Measured {
     // A prime number of sub-steps, so that every part of the round is looked at in turn.
     rig.run_to(seconds * SECOND_TICKS, 7919)?;
     let after = memory(&rig);
-    ensure(before == after, || format!("memory grew from {before:?} to {after:?}"))?;
+    ensure(before == after, || {
+        format!("memory grew from {before:?} to {after:?}")
+    })?;
     let body = "ball".to_owned();
     rig.meadow.act(&Action::Remove { body })?;
-    let moved = rig.look()?.values().filter(|plant| plant.offset_m() > 0.02).count();
+    let moved = rig
+        .look()?
+        .values()
+        .filter(|plant| plant.offset_m() > 0.02)
+        .count();
     rig.ticks(rig.meadow.recovery_ticks())?;
     let plants = rig.look()?;
     let back = all_in_wind_pose(&plants);
@@ -56,7 +69,9 @@ fn go_round(setting: &Setting, seconds: u32) -> Measured {
         format!("{moved} plants moved at the end, all back in their wind pose: {back}")
     })?;
     rig.ticks(2)?;
-    ensure(rig.meadow.tiles.is_empty(), || "a tile does not come to rest".into())?;
+    ensure(rig.meadow.tiles.is_empty(), || {
+        "a tile does not come to rest".into()
+    })?;
     rig.nothing_is_inside()?;
     Ok(format!(
         "{seconds} s in {} sub-steps, {} bytes of state from beginning to end, strain at most {:.4}",
@@ -86,4 +101,3 @@ fn memory(rig: &Rig) -> Memory {
         contacts: meadow.work.contacts.capacity(),
     }
 }
-

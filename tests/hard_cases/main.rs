@@ -75,7 +75,11 @@ const CASES: &[Case] = &[
     case("order_of_bodies", BOTH, order::bodies),
     case("order_of_threads", BOTH, order::threads),
     case("poison", BOTH, input::poison),
-    case("removed_while_touching", BOTH, input::removed_while_touching),
+    case(
+        "removed_while_touching",
+        BOTH,
+        input::removed_while_touching,
+    ),
     case("degenerate_plants", BOTH, input::degenerate_plants),
     case("full_of_tiles", BOTH, limits::tiles),
     case("full_of_bodies", ANY, limits::bodies),

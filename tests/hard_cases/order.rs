@@ -49,7 +49,9 @@ pub fn sharded(setting: &Setting) -> Measured {
             handled_once(&mut rig, &plants)?;
             let wanted = first.get_or_insert_with(|| plants.clone());
             ensure(plants == *wanted, || {
-                let differ = wanted.iter().filter(|(key, bits)| plants.get(*key) != Some(*bits));
+                let differ = wanted
+                    .iter()
+                    .filter(|(key, bits)| plants.get(*key) != Some(*bits));
                 let differ = differ.count();
                 format!("tiles of {tile_m} m, seed {seed:?}: {differ} plants differ")
             })?;
@@ -57,7 +59,9 @@ pub fn sharded(setting: &Setting) -> Measured {
     }
     let plants = first.map_or(0, |plants| plants.len());
     ensure(plants > 50, || format!("only {plants} plants were touched"))?;
-    Ok(format!("3 tile sizes in 3 orders: {plants} touched plants of equal bits, none twice"))
+    Ok(format!(
+        "3 tile sizes in 3 orders: {plants} touched plants of equal bits, none twice"
+    ))
 }
 
 fn by_root(rig: &mut Rig) -> Result<ByRoot, Failed> {
@@ -75,13 +79,20 @@ fn by_root(rig: &mut Rig) -> Result<ByRoot, Failed> {
 /// The passes' own count of plants pushed in the last sub-step is that of the plants touched in it.
 fn handled_once(rig: &mut Rig, plants: &ByRoot) -> Result<(), Failed> {
     let now = rig.meadow.ticks;
-    let touched = rig.plants()?.values().filter(|plant| plant.touched_at == now).count() as u64;
+    let touched = rig
+        .plants()?
+        .values()
+        .filter(|plant| plant.touched_at == now)
+        .count() as u64;
     let counted = match &rig.engine {
         Engine::Cpu(grass) => grass.pushed,
         Engine::Gpu(engine) => u64::from(engine.grass.read_counts()?.touched),
     };
     ensure(counted == touched && touched > 0, || {
-        format!("{counted} plants were handled, {touched} of {} are touched", plants.len())
+        format!(
+            "{counted} plants were handled, {touched} of {} are touched",
+            plants.len()
+        )
     })
 }
 
@@ -173,7 +184,10 @@ pub fn bodies(setting: &Setting) -> Measured {
             })?;
         }
     }
-    Ok(format!("10 orders of 5 bodies, hash {:x?}", wanted.unwrap_or_default()))
+    Ok(format!(
+        "10 orders of 5 bodies, hash {:x?}",
+        wanted.unwrap_or_default()
+    ))
 }
 
 /// Any number of threads, and on a device workgroups of any size.
@@ -188,10 +202,16 @@ pub fn threads(setting: &Setting) -> Measured {
         }
     }
     for threads in [1, 2, 3, 5, 8] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()?;
         hashes.push(pool.install(|| crowd_hash(&mut setting.rig(&crowd(setting))?))?);
     }
     let same = hashes.iter().all(|hash| *hash == hashes[0]);
     ensure(same, || format!("the hashes differ: {hashes:x?}"))?;
-    Ok(format!("{} numbers of threads and sizes of workgroups, hash {:x?}", hashes.len(), hashes[0]))
+    Ok(format!(
+        "{} numbers of threads and sizes of workgroups, hash {:x?}",
+        hashes.len(),
+        hashes[0]
+    ))
 }

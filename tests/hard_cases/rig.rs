@@ -133,7 +133,11 @@ impl Rig {
         let seen = &mut self.seen;
         let worst = snapshot.worst;
         seen.depth_over_limit = seen.depth_over_limit.max(worst.depth_m / worst.limit_m);
-        seen.depth_m = snapshot.depths_m.iter().copied().fold(seen.depth_m, f64::max);
+        seen.depth_m = snapshot
+            .depths_m
+            .iter()
+            .copied()
+            .fold(seen.depth_m, f64::max);
         seen.strain = seen.strain.max(snapshot.max_strain);
         seen.offset_m = seen.offset_m.max(snapshot.max_offset_m);
         let plants = self.plants()?;
@@ -160,7 +164,11 @@ impl Rig {
     /// for a closed form).
     pub fn nothing_is_inside(&self) -> Result<(), Failed> {
         ensure(self.seen.depth_over_limit <= 1.0, || {
-            let Seen { depth_over_limit, depth_m, .. } = self.seen;
+            let Seen {
+                depth_over_limit,
+                depth_m,
+                ..
+            } = self.seen;
             format!("penetration {depth_m:.2e} m is {depth_over_limit:.2} of its limit")
         })
     }

@@ -42,19 +42,27 @@ pub fn bad_time(setting: &Setting) -> Measured {
     for frame_s in BAD_S.into_iter().chain([0.0]) {
         let due = frame(&mut rig, &mut timeline, frame_s)?;
         let same = rig.bits()? == before;
-        ensure(due == 0 && same, || format!("a frame of {frame_s} s changed something"))?;
+        ensure(due == 0 && same, || {
+            format!("a frame of {frame_s} s changed something")
+        })?;
     }
     for _ in 0..1000 {
         frame(&mut rig, &mut timeline, 1e-9)?;
     }
-    ensure(rig.bits()? == before, || "1000 frames of 1e-9 s changed something".into())?;
+    ensure(rig.bits()? == before, || {
+        "1000 frames of 1e-9 s changed something".into()
+    })?;
     // Headless: every sub-step of a long frame, whether it comes as one frame or as many.
     let long = frame(&mut rig, &mut timeline, 0.5)? + frame(&mut rig, &mut timeline, 5.0)?;
-    ensure(long == 660, || format!("5.5 s gave {long} sub-steps, not 660"))?;
+    ensure(long == 660, || {
+        format!("5.5 s gave {long} sub-steps, not 660")
+    })?;
     rig.look()?;
     let mut steady = setting.rig(&rolling(setting, 1.0, ""))?;
     steady.ticks(30 + 660)?;
-    ensure(rig.bits()? == steady.bits()?, || "a long frame is not its sub-steps".into())?;
+    ensure(rig.bits()? == steady.bits()?, || {
+        "a long frame is not its sub-steps".into()
+    })?;
 
     let refused = refuses_bad_sub_steps(setting)?;
     let capped = reports_capped_sweeps(setting)?;
@@ -77,7 +85,9 @@ fn refuses_bad_sub_steps(setting: &Setting) -> Result<usize, Failed> {
             Ok(_) => return Err(format!("a sub-step of {substep_s} s was accepted").into()),
             Err(error) => error.to_string(),
         };
-        ensure(told.contains("substep"), || format!("{substep_s} s: {told}"))?;
+        ensure(told.contains("substep"), || {
+            format!("{substep_s} s: {told}")
+        })?;
     }
     Ok(bad.len())
 }
@@ -88,10 +98,14 @@ fn reports_capped_sweeps(setting: &Setting) -> Result<u64, Failed> {
     let loaded = parse(&rolling(setting, 40.0, "max_sweeps: 2"))?;
     let outcome = run_scene(&loaded, &options, setting.device, |_| {})?;
     let capped = outcome.meadow.counters.capped_sweeps;
-    let told = outcome.verdicts.iter().find(|v| v.what.contains("max_sweeps"));
-    ensure(capped > 0 && told.is_some_and(|v| v.passed == Some(false)), || {
-        format!("{capped} sub-steps were capped, verdict {told:?}")
-    })?;
+    let told = outcome
+        .verdicts
+        .iter()
+        .find(|v| v.what.contains("max_sweeps"));
+    ensure(
+        capped > 0 && told.is_some_and(|v| v.passed == Some(false)),
+        || format!("{capped} sub-steps were capped, verdict {told:?}"),
+    )?;
     Ok(capped)
 }
 
@@ -116,7 +130,9 @@ pub fn bad_time_in_the_window(setting: &Setting) -> Measured {
         let before = stage.meadow().ticks;
         due += stage.advance(frame_s)?;
         let done = stage.meadow().ticks - before;
-        ensure(done <= 30, || format!("a frame of {frame_s} s ran {done} sub-steps"))?;
+        ensure(done <= 30, || {
+            format!("a frame of {frame_s} s ran {done} sub-steps")
+        })?;
     }
     let text = format!("{due} sub-steps, {} s discarded", stage.discarded_s());
     let as_wanted = due == 60 && (stage.discarded_s() - discarded).abs() < 1e-9;
@@ -153,7 +169,9 @@ pub fn ragged_time(setting: &Setting) -> Measured {
             frame(&mut rig, &mut timeline, frame_s)?;
             let now = rig.meadow.ticks;
             let want = (time_s / SUBSTEP_S + 1e-6).floor() as u32;
-            ensure(now == want, || format!("seed {seed}: {now} sub-steps after {time_s} s"))?;
+            ensure(now == want, || {
+                format!("seed {seed}: {now} sub-steps after {time_s} s")
+            })?;
             ensure(rig.bits()? == hashes[now as usize], || {
                 format!("seed {seed}: another state after {time_s} s")
             })?;
@@ -162,11 +180,18 @@ pub fn ragged_time(setting: &Setting) -> Measured {
     }
     let snapshot = steady.look().map(|plants| plants.len())?;
     let moved = measure_moved(&mut steady)?;
-    ensure(moved > 50, || format!("only {moved} of {snapshot} plants moved"))?;
-    Ok(format!("{SEEDS} seeds, {compared} frames, all of equal bits, {moved} plants moved"))
+    ensure(moved > 50, || {
+        format!("only {moved} of {snapshot} plants moved")
+    })?;
+    Ok(format!(
+        "{SEEDS} seeds, {compared} frames, all of equal bits, {moved} plants moved"
+    ))
 }
 
 fn measure_moved(rig: &mut Rig) -> Result<usize, Failed> {
     let plants = rig.plants()?;
-    Ok(plants.values().filter(|p: &&measure::Standing<f32>| p.offset_m() > 0.02).count())
+    Ok(plants
+        .values()
+        .filter(|p: &&measure::Standing<f32>| p.offset_m() > 0.02)
+        .count())
 }
