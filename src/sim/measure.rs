@@ -218,7 +218,9 @@ impl Snapshot {
         plant: &Standing<R>,
     ) {
         let root = Vec3::<f64>::of(plant.nodes[0].to_f64());
-        let covered = bodies.deepest(root).is_some_and(|d| d.depth_m >= -ON_GROUND_M);
+        let covered = bodies
+            .deepest(root)
+            .is_some_and(|d| d.depth_m >= -ON_GROUND_M);
         self.buried += u64::from(covered);
         let mut nearest = f64::NEG_INFINITY;
         let nodes = plant

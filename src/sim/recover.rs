@@ -129,12 +129,12 @@ fn blend_angles<R: Real>(
 /// From one unit vector towards another by a share of the angle between them.
 fn turned<R: Real>(from: Vec3<R>, to: Vec3<R>, share: R) -> Vec3<R> {
     let cos = from.dot(to).to_f64().clamp(-1.0, 1.0);
-    let across = to - from * R::of(cos);
+    let off = to - from * R::of(cos);
     // Opposite directions have no plane of their own: the one through a fixed axis.
     let sideways = across(from);
-    let angle = libm::atan2(across.length().to_f64(), cos) * share.to_f64();
-    let across = across.unit_or(sideways);
-    from * R::of(libm::cos(angle)) + across * R::of(libm::sin(angle))
+    let angle = libm::atan2(off.length().to_f64(), cos) * share.to_f64();
+    let aside = off.unit_or(sideways);
+    from * R::of(libm::cos(angle)) + aside * R::of(libm::sin(angle))
 }
 
 /// The printed form (O09 eq. 8): the offset of a plant touched `age` ticks ago is scaled by t³

@@ -252,6 +252,7 @@ fn faces(rig: &mut Rig) -> Result<Vec<u32>, Failed> {
             .filter_map(|slab| grass.slab(slab))
             .flat_map(|slab| slab.faces.clone())
             .collect(),
+        Engine::Reference(_) => Vec::new(),
         Engine::Gpu(engine) => {
             let state = engine.grass.read_state(meadow)?;
             slabs

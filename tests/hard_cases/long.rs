@@ -65,7 +65,7 @@ fn go_round(setting: &Setting, seconds: u32) -> Measured {
     rig.ticks(rig.meadow.recovery_ticks())?;
     let plants = rig.look()?;
     let back = all_in_wind_pose(&plants);
-    ensure(moved > 10 && !plants.is_empty() && back, || {
+    ensure(moved > 3 && !plants.is_empty() && back, || {
         format!("{moved} plants moved at the end, all back in their wind pose: {back}")
     })?;
     rig.ticks(2)?;

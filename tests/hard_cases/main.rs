@@ -62,6 +62,8 @@ const CASES: &[Case] = &[
     case("degenerate_point", BOTH, contact::degenerate_point),
     case("buried", BOTH, contact::buried),
     case("roll_rates", BOTH, motion::roll_rates),
+    case("roll_reference", BOTH, motion::roll_reference),
+    case("bullet", BOTH, motion::bullet),
     case("teleport", BOTH, place::teleport),
     case("far_away", BOTH, place::far_away),
     case("far_in_a_wide_meadow", BOTH, place::far_in_a_wide_meadow),

@@ -86,6 +86,7 @@ fn handled_once(rig: &mut Rig, plants: &ByRoot) -> Result<(), Failed> {
         .count() as u64;
     let counted = match &rig.engine {
         Engine::Cpu(grass) => grass.pushed,
+        Engine::Reference(grass) => grass.pushed,
         Engine::Gpu(engine) => u64::from(engine.grass.read_counts()?.touched),
     };
     ensure(counted == touched && touched > 0, || {
@@ -115,6 +116,7 @@ fn tick_shuffled(rig: &mut Rig, seed: u32) -> Result<(), Failed> {
             grass.collide(meadow);
             grass.relax(meadow);
         }
+        Engine::Reference(_) => return Err("the reference engine is no trial's device".into()),
         Engine::Gpu(engine) => {
             engine.grass.assign_slabs(meadow)?;
             engine.grass.draw_depth_cubes(meadow)?;
@@ -159,7 +161,7 @@ fn crowd_hash(rig: &mut Rig) -> Result<[u64; 2], Failed> {
     rig.run_to(TICKS, 15)?;
     let grass = match &rig.engine {
         Engine::Cpu(grass) => state_hash(&rig.meadow, grass),
-        Engine::Gpu(_) => rig.bits()?,
+        Engine::Gpu(_) | Engine::Reference(_) => rig.bits()?,
     };
     Ok([rig.meadow.bodies.hash(), grass])
 }

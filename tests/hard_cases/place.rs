@@ -29,7 +29,7 @@ pub fn teleport(setting: &Setting) -> Measured {
     rig.run_to(jump + rig.meadow.recovery_ticks() + SECOND_TICKS, 4)?;
     let plants = rig.look()?;
     // The ball comes no farther than 1.2 m from either place.
-    let between = |plant: &&Standing<f32>| plant.root_in_world()[0].abs() < 23.0;
+    let between = |plant: &&Standing<f64>| plant.root_in_world()[0].abs() < 23.0;
     let touched = plants
         .values()
         .filter(between)
@@ -96,7 +96,7 @@ pub fn far_away(setting: &Setting) -> Measured {
 fn displaced(
     setting: &Setting,
     by_m: [f64; 2],
-) -> Result<BTreeMap<PlantKey, Standing<f32>>, Failed> {
+) -> Result<BTreeMap<PlantKey, Standing<f64>>, Failed> {
     let collider = setting.collider();
     let ground = "Rolling(size_m: (7, 7), amplitude_m: 0.1, wavelength_m: 6, seed: 4)";
     let mut scene = parse(&format!(

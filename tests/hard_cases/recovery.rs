@@ -1,12 +1,13 @@
 //! How plants rise again: at every rate, from every bend, in gusts.
 
 use libtest_mimic::Failed;
-use sward::base::{Vec3, vec3};
+use sward::base::{Real, Vec3, vec3};
 use sward::field::wind_pose;
 use sward::run::Engine;
 use sward::sim::Meadow;
 use sward::sim::cpu::{poses, segment_length};
 use sward::sim::measure::{GrassState, Standing};
+use sward::sim::recover::{Fading, offset_left};
 use sward::sim::slab::Slab;
 
 use super::Measured;
@@ -80,7 +81,7 @@ pub fn release(setting: &Setting) -> Measured {
 }
 
 /// Plants held in this very sub-step and bent so far that their weight can be told from their pose.
-fn bent_plants(rig: &mut Rig) -> Result<Vec<(PlantKey, Standing<f32>)>, Failed> {
+fn bent_plants(rig: &mut Rig) -> Result<Vec<(PlantKey, Standing<f64>)>, Failed> {
     let now = rig.meadow.ticks;
     let held = rig
         .plants()?
@@ -90,7 +91,7 @@ fn bent_plants(rig: &mut Rig) -> Result<Vec<(PlantKey, Standing<f32>)>, Failed> 
 }
 
 /// The segment that was turned farthest from the wind pose, and the sine of its turn.
-fn bend(plant: &Standing<f32>) -> (usize, f64) {
+fn bend(plant: &Standing<f64>) -> (usize, f64) {
     let turns = (0..plant.nodes.len() - 1).map(|j| {
         let [wind, now] = [&plant.wind, &plant.nodes].map(|nodes| segment(nodes, j));
         (j, wind.cross(now).length() / (wind.length() * now.length()))
@@ -101,13 +102,13 @@ fn bend(plant: &Standing<f32>) -> (usize, f64) {
     )
 }
 
-fn segment(nodes: &[Vec3<f32>], j: usize) -> Vec3<f64> {
+fn segment<R: Real>(nodes: &[Vec3<R>], j: usize) -> Vec3<f64> {
     Vec3::of(nodes[j + 1].to_f64()) - Vec3::of(nodes[j].to_f64())
 }
 
 /// The share of the offset that a pose still has. A segment points along w + s·d, whatever its
 /// length, with w of the wind pose and d of the offset: s = −(u × w)·(u × d) / |u × d|².
-fn weight(held: &Standing<f32>, now: &Standing<f32>) -> f64 {
+fn weight(held: &Standing<f64>, now: &Standing<f64>) -> f64 {
     let (j, _) = bend(held);
     let wind = segment(&held.wind, j);
     let offset = segment(&held.nodes, j) - wind;
@@ -120,7 +121,7 @@ fn weight(held: &Standing<f32>, now: &Standing<f32>) -> f64 {
 /// sooner than the weight, since a bent blade keeps its length.
 fn tip_times_s(setting: &Setting, substep_s: f64) -> Result<[f64; 3], Failed> {
     let mut rig = held_down(setting, CALM, substep_s)?;
-    let tip_m = |plant: &Standing<f32>| plant.offset_m();
+    let tip_m = |plant: &Standing<f64>| plant.offset_m();
     let farthest = bent_plants(&mut rig)?
         .into_iter()
         .reduce(|a, b| if tip_m(&b.1) > tip_m(&a.1) { b } else { a });
@@ -161,7 +162,7 @@ pub fn flattened(setting: &Setting) -> Measured {
         for age in 1..=rig.meadow.recovery_ticks() {
             // Nothing of the state is rewritten while a plant recovers, so any age can be shown.
             let state = state.aged(&rig.meadow, age);
-            let left = sward::sim::recover::offset_left(age, rig.meadow.step_over_t());
+            let left = offset_left(age, rig.meadow.step_over_t());
             for shown in shown(&mut rig, &state)? {
                 let segments = shown.nodes.len() - 1;
                 let lengths = (0..segments).map(|j| segment(&shown.nodes, j).length());
@@ -279,7 +280,7 @@ fn shown(rig: &mut Rig, state: &Turned) -> Result<Vec<Shown>, Failed> {
     let segments = field.table.segments as usize;
     let plants = field.grid.plants_per_tile();
     let drawn = match &mut rig.engine {
-        Engine::Cpu(_) => None,
+        Engine::Cpu(_) | Engine::Reference(_) => None,
         Engine::Gpu(engine) => {
             engine.grass.upload(meadow, state)?;
             engine.grass.recover()?;
@@ -293,8 +294,8 @@ fn shown(rig: &mut Rig, state: &Turned) -> Result<Vec<Shown>, Failed> {
             let Some(plant) = field.plant(&tile.anchor, tile.tile, place) else {
                 continue;
             };
-            let step_over_t = meadow.step_over_t() as f32;
-            let (wind, pose) = poses(field, &meadow.work, step_over_t, tile, &plant, slab, place);
+            let fading = Fading::new(meadow);
+            let (wind, pose) = poses(field, &meadow.work, &fading, tile, &plant, slab, place);
             let row = (n * plants as usize + place as usize) * (segments + 1);
             let nodes = match &drawn {
                 None => pose[..=segments].to_vec(),

@@ -110,7 +110,7 @@ impl Rig {
     }
 
     /// Every plant of the active tiles.
-    pub fn plants(&mut self) -> Result<BTreeMap<PlantKey, Standing<f32>>, Failed> {
+    pub fn plants(&mut self) -> Result<BTreeMap<PlantKey, Standing<f64>>, Failed> {
         let mut found = BTreeMap::new();
         for tile in &self.meadow.work.tiles {
             let plants = self.engine.standing(&self.meadow, tile)?;
@@ -124,7 +124,7 @@ impl Rig {
     /// # Errors
     ///
     /// A value that is not finite, a vertex too far from its root, anything dropped.
-    pub fn look(&mut self) -> Result<BTreeMap<PlantKey, Standing<f32>>, Failed> {
+    pub fn look(&mut self) -> Result<BTreeMap<PlantKey, Standing<f64>>, Failed> {
         let snapshot = self.engine.snapshot(&self.meadow)?;
         ensure(snapshot.not_finite == 0, || {
             format!("{} plants are not finite", snapshot.not_finite)
@@ -188,23 +188,23 @@ impl Rig {
 
 /// Largest distance of a vertex from the root, in lengths of the blade; infinite where a vertex
 /// is not finite.
-fn reach(plant: &Standing<f32>) -> f64 {
+fn reach(plant: &Standing<f64>) -> f64 {
     let root = plant.nodes[0];
     let far = plant.nodes.iter().map(|&node| {
-        let off = f64::from((node - root).length());
+        let off = (node - root).length();
         if off.is_finite() { off } else { f64::INFINITY }
     });
     far.fold(0.0, f64::max) / f64::from(plant.plant.height_m)
 }
 
 /// Largest distance between the nodes of two poses of a plant, in metres.
-pub fn apart(a: &[Vec3<f32>], b: &[Vec3<f32>]) -> f64 {
-    let far = a.iter().zip(b).map(|(&a, &b)| f64::from((a - b).length()));
+pub fn apart(a: &[Vec3<f64>], b: &[Vec3<f64>]) -> f64 {
+    let far = a.iter().zip(b).map(|(&a, &b)| (a - b).length());
     far.fold(0.0, f64::max)
 }
 
 /// True where every plant is in its wind pose, bit for bit.
-pub fn all_in_wind_pose(plants: &BTreeMap<PlantKey, Standing<f32>>) -> bool {
+pub fn all_in_wind_pose(plants: &BTreeMap<PlantKey, Standing<f64>>) -> bool {
     plants.values().all(|plant| plant.nodes == plant.wind)
 }
 
@@ -222,7 +222,7 @@ impl Fnv {
         }
     }
 
-    pub fn point(&mut self, point: Vec3<f32>) {
+    pub fn point(&mut self, point: Vec3<f64>) {
         point.to_f32().iter().for_each(|c| self.eat(c.to_bits()));
     }
 }

@@ -192,6 +192,6 @@ fn measure_moved(rig: &mut Rig) -> Result<usize, Failed> {
     let plants = rig.plants()?;
     Ok(plants
         .values()
-        .filter(|p: &&measure::Standing<f32>| p.offset_m() > 0.02)
+        .filter(|p: &&measure::Standing<f64>| p.offset_m() > 0.02)
         .count())
 }
