@@ -52,6 +52,10 @@ impl Met {
     }
 }
 
+/// So close to an edge a vertex may go round it within a sub-step, in metres: a segment, straight and
+/// at most 0.42 m / 8 long, slips off the edge as a whole, and the body goes 25 mm.
+const EDGE_M: f64 = 0.42 / 8.0 + 0.025;
+
 /// Where a vertex is relative to a slab: ahead of its face across the thinnest axis or behind it.
 fn side_of(p: Vec3<f64>, half: [f64; 3]) -> Option<bool> {
     let thin = if half[0] <= half[1] && half[0] <= half[2] {
@@ -62,9 +66,7 @@ fn side_of(p: Vec3<f64>, half: [f64; 3]) -> Option<bool> {
         2
     };
     let c = p.to_f64();
-    // Close to an edge a vertex may go round it: the body goes 25 mm in a sub-step, and a blade that
-    // is let go as far the other way.
-    let over_a_face = (0..3).all(|a| a == thin || c[a].abs() < half[a] - 0.05);
+    let over_a_face = (0..3).all(|a| a == thin || c[a].abs() < half[a] - EDGE_M);
     let clear = c[thin].abs() > half[thin];
     (over_a_face && clear).then_some(c[thin] > 0.0)
 }
