@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use libtest_mimic::Failed;
-use sward::run::Timeline;
 use sward::run::against::{Against, Difference};
 use sward::run::swept::{BENT_M, Swept};
+use sward::run::{Device, Timeline};
 use sward::sim::measure::Standing;
 
 use super::Measured;
@@ -144,7 +144,8 @@ pub fn roll_reference(setting: &Setting) -> Measured {
 fn beside_reference(setting: &Setting, speed: f64, substep_s: f64) -> Result<Difference, Failed> {
     let mut rig = setting.rig(&rolling(setting, speed, substep_s))?;
     let truth = parse(&rolling(setting, speed, 1.0 / 480.0))?;
-    let mut against = Against::new(truth.scene, &truth.assets)?;
+    let truth = Rig::new(&Device::Reference, truth)?;
+    let mut against = Against::new(truth.meadow, truth.engine);
     let mut timeline = Timeline::unlimited(substep_s);
     for _ in 0..(ROLLED_S * 30.0).round() as u32 {
         let due = timeline.advance(1.0 / 30.0);
@@ -193,7 +194,8 @@ fn shot(setting: &Setting, speed: f64) -> Result<[f64; 3], Failed> {
     );
     let mut rig = setting.rig(&text)?;
     let truth = parse(&text)?;
-    let mut against = Against::new(truth.scene, &truth.assets)?;
+    let truth = Rig::new(&Device::Reference, truth)?;
+    let mut against = Against::new(truth.meadow, truth.engine);
     let body = rig.meadow.bodies.id_of("ball").ok_or("no ball")?;
     let mut swept = Swept::default();
     let last = (120.0 * 10.0 / speed) as u32 + 12;
