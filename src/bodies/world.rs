@@ -24,6 +24,9 @@ const GRAVITY: f32 = -9.81;
 /// wide, so its usual 5 mm would show.
 const ALLOWED_ERROR_M: f32 = 0.0005;
 
+/// A body this far below the ground is lost, in metres.
+const LOST_BELOW_M: f64 = 10.0;
+
 /// Every body of a scene, advanced in sub-steps.
 ///
 /// Bodies enter rapier in the order of their names, since its result depends on that order: the
@@ -83,7 +86,7 @@ impl Bodies {
     pub fn new(scene: &Scene, assets: &Assets, ground: &HeightGrid) -> Result<Self, BodyError> {
         let mut bodies = Self {
             physics: physics_world(),
-            frame: Frame::around(&first_places(scene), ground.centre_m),
+            frame: Frame::around(&first_places(scene, ground), ground.centre_m),
             grounds: Vec::new(),
             ground: ground.clone(),
             ground_friction: scene.terrain.friction,
@@ -266,6 +269,7 @@ impl Bodies {
             .actors
             .values()
             .filter_map(|actor| Some(actor.pieces.first()?.to.place))
+            .filter(|&place| is_over(&self.ground, place))
             .collect();
         if self.frame.is_near(&places) {
             return;
@@ -372,18 +376,21 @@ impl Bodies {
     }
 }
 
+/// True of a place that rapier's origin is kept near to. A body that has gone over the edge falls for
+/// ever, and would take the origin away from the others.
+fn is_over(ground: &HeightGrid, place: Vec3<f64>) -> bool {
+    let surface_m = || ground.height_in_world(place.x, place.z);
+    ground.contains(place.x, place.z) && place.y > surface_m() - LOST_BELOW_M
+}
+
 /// Where the scene's bodies are at its start, as far as the scene itself says it.
-fn first_places(scene: &Scene) -> Vec<Vec3<f64>> {
+fn first_places(scene: &Scene, ground: &HeightGrid) -> Vec<Vec3<f64>> {
     let place = |body: &Body| match &body.motion {
         Motion::Path { waypoints, .. } => waypoints.first().map(|w| w.position_m),
         Motion::Free | Motion::Thrown { .. } | Motion::Fixed => Some(body.position_m),
     };
-    scene
-        .bodies
-        .iter()
-        .filter_map(place)
-        .map(Vec3::of)
-        .collect()
+    let places = scene.bodies.iter().filter_map(place).map(Vec3::of);
+    places.filter(|&place| is_over(ground, place)).collect()
 }
 
 fn physics_world() -> PhysicsWorld {
