@@ -21,12 +21,6 @@ var<private> nodes: array<vec3f, MAX_NODES>;
 var<private> wind_nodes: array<vec3f, MAX_NODES>;
 var<private> faces: array<u32, MAX_SEGMENTS>;
 
-// Some unit vector at right angles to a unit vector.
-fn across(n: vec3f) -> vec3f {
-    let axis = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(n.x) < 0.5);
-    return unit_or(axis - n * dot(n, axis), UP);
-}
-
 // Direction of segment j in the wind pose.
 fn rest_direction(j: u32) -> vec3f {
     return unit_or(wind_nodes[j + 1u] - wind_nodes[j], UP);

@@ -21,9 +21,10 @@ struct Walk {
     before: bool,
     bend_before: vec2f,
     wind_before: vec3f,
-    // The node reached, and the same node of the wind pose.
+    // The node reached, the same node of the wind pose, and before its segment got its length.
     node: vec3f,
     wind: vec3f,
+    bent: vec3f,
 }
 
 // The share of the offset that is left `age` ticks after the last contact.
@@ -49,7 +50,22 @@ fn walk_from_root(tile: TileRecord, plant: Plant, touched_at: u32) -> Walk {
     }
     walk.node = plant.root;
     walk.wind = plant.root;
+    walk.bent = plant.root;
     return walk;
+}
+
+// Some unit vector at right angles to a unit vector.
+fn across(n: vec3f) -> vec3f {
+    let axis = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(n.x) < 0.5);
+    return unit_or(axis - n * dot(n, axis), UP);
+}
+
+// True of a blend of opposite directions: short, and along the line of both.
+fn is_turned_over(segment: vec3f, rest: vec3f) -> bool {
+    let square = dot(rest, rest);
+    let off_line = cross(segment, rest);
+    return dot(segment, segment) < 0.25 * square
+        && dot(off_line, off_line) < ASIDE * ASIDE * square * square;
 }
 
 // True of a plant that was touched in the sub-step before this one.
@@ -90,6 +106,11 @@ fn walk_up(walk: ptr<function, Walk>, plant: Plant, j: u32, offset: vec3f) {
         (*walk).node = bent;
         return;
     }
-    let rest = unit_or(above - below, UP);
-    (*walk).node += unit_or(bent - (*walk).node, rest) * length;
+    let rest = above - below;
+    var segment = bent - (*walk).bent;
+    (*walk).bent = bent;
+    if is_turned_over(segment, rest) {
+        segment += across(unit_or(rest, UP)) * (length * ASIDE);
+    }
+    (*walk).node += unit_or(segment, unit_or(rest, UP)) * length;
 }

@@ -1,11 +1,11 @@
 //! What the script and the player do to bodies.
 
 use crate::base::Vec3;
-use crate::scene::{Action, Body, Shape};
+use crate::scene::{Action, Body, Shape, limits};
 
 use super::actor::{Actor, Control, Piece, collider, first_pose, radians, rigid_body};
 use super::error::BodyError;
-use super::frame::{pose_from_rapier, to_rapier};
+use super::frame::to_rapier;
 use super::vehicle::{Build, Controls, Vehicle};
 use super::world::Bodies;
 
@@ -93,6 +93,13 @@ impl Bodies {
                 name: body.name.clone(),
             });
         }
+        if self.actors.len() >= limits::BODIES {
+            self.refused += 1;
+            return Err(BodyError::TooMany {
+                name: body.name.clone(),
+                limit: limits::BODIES,
+            });
+        }
         let control = Control::of(body)?;
         let shapes = self.prepare_shapes(body)?;
         let build = Build::of(&body.shape);
@@ -103,7 +110,7 @@ impl Bodies {
         }
         let collider = collider(body, shapes[0], &self.library)?;
         let pose = first_pose(body, &control, &self.ground, now_s);
-        let rigid = rigid_body(body, &control, pose);
+        let rigid = rigid_body(body, &control, pose, &self.frame);
         let next = self.ids.values().max().map_or(0, |&id| id + 1);
         let id = *self.ids.entry(body.name.clone()).or_insert(next);
         let moves = rigid.linvel().is_finite() && rigid.angvel().is_finite();
@@ -112,7 +119,7 @@ impl Bodies {
             return Ok(());
         }
         // As rapier rounds it, so that a body that does not move keeps its bits.
-        let pose = pose_from_rapier(rigid.position());
+        let pose = self.frame.pose_from_rapier(rigid.position());
         let (handle, _) = self.physics.insert(rigid, collider);
         let piece = |&shape: &u32| Piece {
             shape,
@@ -167,7 +174,7 @@ impl Bodies {
             return Err(held(name, &actor.control, wish));
         }
         let handle = actor.handle;
-        let place = to_rapier(Vec3::of(position_m));
+        let place = self.frame.place_to_rapier(Vec3::of(position_m));
         let velocity = to_rapier(Vec3::of_f32(velocity_m_per_s));
         if !place.is_finite() || !velocity.is_finite() {
             self.quarantine(name);
@@ -179,7 +186,7 @@ impl Bodies {
         body.set_translation(place, true);
         body.set_linvel(velocity, true);
         body.set_angvel(rapier3d::math::Vector::ZERO, true);
-        let pose = pose_from_rapier(body.position());
+        let pose = self.frame.pose_from_rapier(body.position());
         if let Some(actor) = self.actors.get_mut(name) {
             let poses = actor.piece_poses(pose);
             for (piece, pose) in actor.pieces.iter_mut().zip(poses) {

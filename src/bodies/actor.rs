@@ -9,7 +9,7 @@ use crate::scene::{Body, Collider as GrassCollider, Mass, Motion};
 use crate::terrain::HeightGrid;
 
 use super::error::BodyError;
-use super::frame::{pose_to_rapier, to_rapier, turn_of_degrees};
+use super::frame::{Frame, to_rapier, turn_of_degrees};
 use super::library::ShapeLibrary;
 use super::path::Path;
 use super::vehicle::{Build, Vehicle};
@@ -114,7 +114,12 @@ pub(super) fn first_pose(
 }
 
 /// The body as rapier takes it.
-pub(super) fn rigid_body(body: &Body, control: &Control, at: Pose<f64>) -> RigidBody {
+pub(super) fn rigid_body(
+    body: &Body,
+    control: &Control,
+    at: Pose<f64>,
+    frame: &Frame,
+) -> RigidBody {
     let builder = match control {
         Control::Free => RigidBodyBuilder::dynamic().ccd_enabled(true),
         Control::Fixed => RigidBodyBuilder::fixed(),
@@ -122,7 +127,7 @@ pub(super) fn rigid_body(body: &Body, control: &Control, at: Pose<f64>) -> Rigid
     };
     let [linear, angular] = body.damping.map(damping_per_s);
     let mut builder = builder
-        .pose(pose_to_rapier(at))
+        .pose(frame.pose_to_rapier(at))
         .linear_damping(linear)
         .angular_damping(angular);
     if let Motion::Thrown {

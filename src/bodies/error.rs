@@ -7,6 +7,10 @@ use thiserror::Error;
 pub enum BodyError {
     #[error("body `{name}`: another body has this name; give each body a name of its own")]
     DuplicateName { name: String },
+    #[error(
+        "body `{name}` is one more than the {limit} that may be in the world; remove one before"
+    )]
+    TooMany { name: String, limit: usize },
     #[error("no body is named `{name}`; name one of the scene or one spawned before this action")]
     UnknownBody { name: String },
     #[error("body `{name}` is no vehicle; only a vehicle can be driven")]

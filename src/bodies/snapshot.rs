@@ -8,6 +8,7 @@ use rapier3d::prelude::{
 };
 
 use super::actor::Actor;
+use super::frame::Frame;
 use super::link::Link;
 use super::world::Bodies;
 
@@ -30,6 +31,8 @@ pub struct BodiesState {
     actors: BTreeMap<String, Actor>,
     ids: BTreeMap<String, u32>,
     quarantined: Vec<String>,
+    refused: u64,
+    frame: Frame,
     links: Vec<Link>,
 }
 
@@ -65,6 +68,8 @@ impl Bodies {
             actors: self.actors.clone(),
             ids: self.ids.clone(),
             quarantined: self.quarantined.clone(),
+            refused: self.refused,
+            frame: self.frame,
             links: self.links.clone(),
         }
     }
@@ -90,6 +95,8 @@ impl Bodies {
         self.actors = state.actors;
         self.ids = state.ids;
         self.quarantined = state.quarantined;
+        self.refused = state.refused;
+        self.frame = state.frame;
         self.links = state.links;
     }
 }

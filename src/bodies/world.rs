@@ -7,13 +7,13 @@ use rapier3d::prelude::{ColliderHandle, PhysicsWorld, QueryFilter, Ray};
 
 use crate::base::{Hash64, Pose, Vec3};
 use crate::scene::assets::Assets;
-use crate::scene::{Action, Scene};
+use crate::scene::{Action, Body, Motion, Scene};
 use crate::terrain::HeightGrid;
 
 use super::actor::{Actor, Control};
 use super::collider;
 use super::error::BodyError;
-use super::frame::{from_rapier, pose_from_rapier, pose_to_rapier, to_rapier};
+use super::frame::{Frame, from_rapier, to_rapier};
 use super::library::ShapeLibrary;
 use super::link::Link;
 use super::shape::RigidShape;
@@ -24,6 +24,9 @@ const GRAVITY: f32 = -9.81;
 /// wide, so its usual 5 mm would show.
 const ALLOWED_ERROR_M: f32 = 0.0005;
 
+/// A body this far below the ground is lost, in metres.
+const LOST_BELOW_M: f64 = 10.0;
+
 /// Every body of a scene, advanced in sub-steps.
 ///
 /// Bodies enter rapier in the order of their names, since its result depends on that order: the
@@ -31,6 +34,9 @@ const ALLOWED_ERROR_M: f32 = 0.0005;
 /// out and named by [`Bodies::quarantined`]; the others go on.
 pub struct Bodies {
     pub(super) physics: PhysicsWorld,
+    pub(super) frame: Frame,
+    /// The ground's colliders, with where they are in the world.
+    grounds: Vec<(ColliderHandle, Vec3<f64>)>,
     pub(super) ground: HeightGrid,
     pub(super) ground_friction: f32,
     pub(super) library: ShapeLibrary,
@@ -38,6 +44,7 @@ pub struct Bodies {
     /// Rank of each name that the scene knows, then names dropped later.
     pub(super) ids: BTreeMap<String, u32>,
     pub(super) quarantined: Vec<String>,
+    pub(super) refused: u64,
     pub(super) links: Vec<Link>,
 }
 
@@ -79,16 +86,24 @@ impl Bodies {
     pub fn new(scene: &Scene, assets: &Assets, ground: &HeightGrid) -> Result<Self, BodyError> {
         let mut bodies = Self {
             physics: physics_world(),
+            frame: Frame::around(&first_places(scene, ground), ground.centre_m),
+            grounds: Vec::new(),
             ground: ground.clone(),
             ground_friction: scene.terrain.friction,
             library: ShapeLibrary::new(assets.meshes.clone()),
             actors: BTreeMap::new(),
             ids: ids(scene),
             quarantined: Vec::new(),
+            refused: 0,
             links: Vec::new(),
         };
-        let collider = collider::ground(ground, scene.terrain.friction)?;
-        bodies.physics.insert_collider(collider, None);
+        for (place, collider) in collider::ground(ground, scene.terrain.friction)? {
+            let at = bodies.frame.place_to_rapier(place);
+            let mut collider = collider;
+            collider.set_translation(at);
+            let handle = bodies.physics.insert_collider(collider, None);
+            bodies.grounds.push((handle, place));
+        }
         let mut in_order: Vec<_> = scene.bodies.iter().collect();
         in_order.sort_by(|a, b| a.name.cmp(&b.name));
         for body in in_order {
@@ -110,6 +125,7 @@ impl Bodies {
         if !moves {
             return;
         }
+        self.follow_bodies();
         self.physics.integration_parameters.dt = dt_s as f32;
         // Rapier's own ratio of the shortest piece of a step to the whole.
         self.physics.integration_parameters.min_ccd_dt = dt_s as f32 / 100.0;
@@ -173,6 +189,11 @@ impl Bodies {
         &self.quarantined
     }
 
+    /// How many bodies were refused because the world was full.
+    pub fn refused(&self) -> u64 {
+        self.refused
+    }
+
     /// What a ray meets first within `reach_m`; `direction` need not be of unit length. `None`
     /// also if a number is not finite.
     pub fn ray(&self, from_m: [f64; 3], direction: [f64; 3], reach_m: f64) -> Option<RayHit<'_>> {
@@ -181,7 +202,7 @@ impl Bodies {
             return None;
         }
         let along = along.unit_or(Vec3::ZERO);
-        let ray = Ray::new(to_rapier(from), to_rapier(along));
+        let ray = Ray::new(self.frame.place_to_rapier(from), to_rapier(along));
         let filter = QueryFilter::default();
         let (collider, distance) = self.physics.cast_ray(&ray, reach_m as f32, true, filter)?;
         Some(RayHit {
@@ -243,6 +264,33 @@ impl Bodies {
         }
     }
 
+    /// Moves rapier's origin to where the bodies are now, if they have gone far from it.
+    fn follow_bodies(&mut self) {
+        let places: Vec<Vec3<f64>> = self
+            .actors
+            .values()
+            .filter_map(|actor| Some(actor.pieces.first()?.to.place))
+            .filter(|&place| is_over(&self.ground, place))
+            .collect();
+        if self.frame.is_near(&places) {
+            return;
+        }
+        let frame = Frame::around(&places, self.ground.centre_m);
+        let shift = self.frame.shift_to(&frame);
+        for actor in self.actors.values() {
+            if let Some(body) = self.physics.bodies.get_mut(actor.handle) {
+                let place = body.translation() + shift;
+                body.set_translation(place, false);
+            }
+        }
+        for &(handle, place) in &self.grounds {
+            if let Some(collider) = self.physics.colliders.get_mut(handle) {
+                collider.set_translation(frame.place_to_rapier(place));
+            }
+        }
+        self.frame = frame;
+    }
+
     fn owner(&self, collider: ColliderHandle) -> Option<&str> {
         let parent = self.physics.colliders.get(collider)?.parent()?;
         let mut all = self.actors.iter();
@@ -258,7 +306,7 @@ impl Bodies {
             let Some(body) = self.physics.bodies.get_mut(actor.handle) else {
                 continue;
             };
-            let pose = pose_to_rapier(path.pose(end_s, &self.ground));
+            let pose = self.frame.pose_to_rapier(path.pose(end_s, &self.ground));
             if path.jumps(start_s, end_s) {
                 // Without a velocity: what it lands on is not struck, what it leaves not dragged.
                 body.set_position(pose, true);
@@ -298,7 +346,7 @@ impl Bodies {
             let Some(body) = self.physics.bodies.get(actor.handle) else {
                 continue;
             };
-            let pose = pose_from_rapier(body.position());
+            let pose = self.frame.pose_from_rapier(body.position());
             let jumps = match &actor.control {
                 Control::Path(path) => path.jumps(start_s, end_s),
                 Control::Free | Control::Fixed => false,
@@ -327,6 +375,23 @@ impl Bodies {
             }));
         }
     }
+}
+
+/// True of a place that rapier's origin is kept near to. A body that has gone over the edge falls for
+/// ever, and would take the origin away from the others.
+fn is_over(ground: &HeightGrid, place: Vec3<f64>) -> bool {
+    let surface_m = || ground.height_in_world(place.x, place.z);
+    ground.contains(place.x, place.z) && place.y > surface_m() - LOST_BELOW_M
+}
+
+/// Where the scene's bodies are at its start, as far as the scene itself says it.
+fn first_places(scene: &Scene, ground: &HeightGrid) -> Vec<Vec3<f64>> {
+    let place = |body: &Body| match &body.motion {
+        Motion::Path { waypoints, .. } => waypoints.first().map(|w| w.position_m),
+        Motion::Free | Motion::Thrown { .. } | Motion::Fixed => Some(body.position_m),
+    };
+    let places = scene.bodies.iter().filter_map(place).map(Vec3::of);
+    places.filter(|&place| is_over(ground, place)).collect()
 }
 
 fn physics_world() -> PhysicsWorld {

@@ -28,18 +28,28 @@ pub struct GrassKernels {
     collide: CollidePass,
     relax: RelaxPass,
     recover: RecoverPass,
+    workgroup: u32,
 }
 
 impl GrassKernels {
     /// # Errors
     /// A shader that the driver refuses.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Self::with_workgroup(gpu, WORKGROUP)
+    }
+
+    /// With workgroups of another size, 1 to 256, which changes no result.
+    ///
+    /// # Errors
+    /// A shader that the driver refuses.
+    pub fn with_workgroup(gpu: &Gpu, workgroup: u32) -> Result<Self, GpuError> {
         Ok(Self {
             field: FieldBuffers::layout(gpu),
-            depth_cube: DepthCubePass::new(gpu)?,
-            collide: CollidePass::new(gpu)?,
-            relax: RelaxPass::new(gpu)?,
-            recover: RecoverPass::new(gpu)?,
+            depth_cube: DepthCubePass::new(gpu, workgroup)?,
+            collide: CollidePass::new(gpu, workgroup)?,
+            relax: RelaxPass::new(gpu, workgroup)?,
+            recover: RecoverPass::new(gpu, workgroup)?,
+            workgroup,
         })
     }
 }
@@ -251,7 +261,7 @@ impl GpuGrass {
         let plants = grid.plants_per_tile();
         let listed = TOUCHED_HEADER as usize + 2 * self.colliding as usize * plants as usize;
         buffers.touched.grow_to(gpu, listed)?;
-        let groups = |tiles| [plants.div_ceil(WORKGROUP), tiles, 1];
+        let groups = |tiles| [plants.div_ceil(self.kernels.workgroup), tiles, 1];
         let [collide, recover] = [groups(self.colliding), groups(self.active)];
         buffers
             .groups

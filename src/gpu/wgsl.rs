@@ -19,6 +19,7 @@ use crate::field::wind::WAVES;
 use crate::sim::collide::PINNED_M;
 use crate::sim::contact::FACE_MASK;
 use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIDDEN_M, HIT};
+use crate::sim::recover::ASIDE;
 use crate::sim::solid::{KEEP_FACE, NO_FACE, OUT_OF_REACH_M};
 
 /// A WGSL file, embedded, with the Rust constants it uses.
@@ -119,7 +120,7 @@ pub const SHARED: &[WgslFile] = &[
     wgsl_file!("shared/philox.wgsl"),
     wgsl_file!("shared/plant.wgsl", ANCHOR_CELLS),
     wgsl_file!("shared/pose.wgsl", MAX_NODES),
-    wgsl_file!("shared/recovering.wgsl"),
+    wgsl_file!("shared/recovering.wgsl", ASIDE),
     wgsl_file!("shared/rigid.wgsl"),
     wgsl_file!(
         "shared/solid.wgsl",
@@ -230,6 +231,18 @@ impl Assembled {
 /// # Errors
 /// An import that is unknown or malformed; two constants of one name and different values.
 pub fn assemble(file: &WgslFile, libraries: &[&[WgslFile]]) -> Result<Assembled, WgslError> {
+    assemble_with(file, libraries, &[])
+}
+
+/// As [`assemble`], with other values for the constants named in `instead`.
+///
+/// # Errors
+/// As for [`assemble`].
+pub fn assemble_with(
+    file: &WgslFile,
+    libraries: &[&[WgslFile]],
+    instead: &[Constant],
+) -> Result<Assembled, WgslError> {
     let mut parts = Vec::new();
     gather(file, libraries, &mut parts)?;
 
@@ -250,6 +263,8 @@ pub fn assemble(file: &WgslFile, libraries: &[&[WgslFile]]) -> Result<Assembled,
 
     let mut text = String::new();
     for constant in &constants {
+        let other = instead.iter().find(|other| other.name == constant.name);
+        let constant = other.unwrap_or(constant);
         write_constant(&mut text, constant);
     }
     let mut starts = Vec::new();

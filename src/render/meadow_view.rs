@@ -95,7 +95,7 @@ fn framing_view(meadow: &Meadow) -> View {
     let ground = &meadow.field.ground;
     let on_ground = |x: f64, z: f64| Vec3::new(x, ground.height_in_world(x, z), z);
     let middle = match places.len() {
-        0 => on_ground(0.0, 0.0),
+        0 => on_ground(ground.centre_m[0], ground.centre_m[1]),
         count => places.iter().fold(Vec3::ZERO, |sum, &place| sum + place) * (1.0 / count as f64),
     };
     let spread = places

@@ -5,11 +5,15 @@ use serde::{Deserialize, Serialize};
 
 use super::limits;
 
-/// The ground of a scene. It is centred on x = z = 0; heights are along +y.
+/// The ground of a scene; heights are along +y.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Terrain {
     pub ground: Ground,
+    /// World x and z of the ground's middle. The ground, its plants and its colours are the same
+    /// wherever it lies.
+    #[schemars(inner(range(min = limits::PLACE.min, max = limits::PLACE.max)))]
+    pub centre_m: [f64; 2],
     /// Colours of the base map, linear RGB in 0…1: lush, dry, bare soil. A plant takes the colour
     /// of the ground under it.
     #[schemars(inner(range(min = limits::FRACTION.min, max = limits::FRACTION.max)))]
@@ -27,6 +31,7 @@ impl Default for Terrain {
     fn default() -> Self {
         Self {
             ground: Ground::default(),
+            centre_m: [0.0; 2],
             lush_rgb: [0.105, 0.185, 0.045],
             dry_rgb: [0.25, 0.24, 0.095],
             soil_rgb: [0.13, 0.085, 0.045],

@@ -11,7 +11,7 @@ use crate::field::tiles::Changes;
 use crate::field::wind::FADE_S;
 use crate::field::{ActiveTiles, Field, FieldError, TileId, TileState, WindNow};
 use crate::scene::assets::Assets;
-use crate::scene::{Action, Event, Scene, Wind};
+use crate::scene::{Action, Event, Invalid, Scene, Wind, validate};
 use crate::terrain::TerrainError;
 
 use super::parts::{Parts, Tested, takes_whole_bodies};
@@ -78,6 +78,8 @@ struct WindChange {
 #[derive(Debug, thiserror::Error)]
 pub enum MeadowError {
     #[error(transparent)]
+    Scene(#[from] Invalid),
+    #[error(transparent)]
     Terrain(#[from] TerrainError),
     #[error(transparent)]
     Field(#[from] FieldError),
@@ -86,12 +88,13 @@ pub enum MeadowError {
 }
 
 impl Meadow {
-    /// Lays out a validated scene.
+    /// Lays out a scene.
     ///
     /// # Errors
     ///
-    /// A ground, a field or a body that cannot be made, each with its limit.
+    /// A value outside its range, whoever made the scene; a ground, a field or a body that cannot be made, each with its limit.
     pub fn new(scene: Scene, assets: &Assets) -> Result<Self, MeadowError> {
+        validate(&scene)?;
         let ground = crate::terrain::height_grid(&scene.terrain, assets)?;
         let bodies = Bodies::new(&scene, assets, &ground)?;
         let field = Field::new(ground, &scene.grass, &scene.solver)?;

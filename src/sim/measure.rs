@@ -47,6 +47,8 @@ pub struct Snapshot {
     pub pushed_nodes: u64,
     /// Nodes that lie on the ground inside a body.
     pub pinched: u64,
+    /// Plants whose root a body stands on or covers.
+    pub buried: u64,
     /// Largest gap between a plant pushed in this sub-step and the body, in metres: how far its
     /// nearest node was pushed past the surface.
     pub over_push_m: f64,
@@ -174,6 +176,7 @@ impl Snapshot {
         self.worst = self.worst.worse(other.worst);
         self.pushed_nodes += other.pushed_nodes;
         self.pinched += other.pinched;
+        self.buried += other.buried;
         self.over_push_m = self.over_push_m.max(other.over_push_m);
         self.max_strain = self.max_strain.max(other.max_strain);
         self.max_offset_m = self.max_offset_m.max(other.max_offset_m);
@@ -214,6 +217,11 @@ impl Snapshot {
         bodies: &TrueBodies,
         plant: &Standing<R>,
     ) {
+        let root = Vec3::<f64>::of(plant.nodes[0].to_f64());
+        let covered = bodies
+            .deepest(root)
+            .is_some_and(|d| d.depth_m >= -ON_GROUND_M);
+        self.buried += u64::from(covered);
         let mut nearest = f64::NEG_INFINITY;
         let nodes = plant
             .nodes

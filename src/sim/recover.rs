@@ -21,6 +21,7 @@ use crate::field::Nodes;
 use crate::scene::method::Recovery;
 
 use super::meadow::Meadow;
+use super::relax::across;
 
 /// How offsets fade.
 #[derive(Clone, Copy, Debug)]
@@ -52,14 +53,35 @@ pub fn is_back(age: u32, step_over_t: f32) -> bool {
     1.0 - age as f32 * step_over_t < 0.5 * step_over_t
 }
 
-/// Moves nodes onto the rest length of their segments, from root to tip, keeping directions
-/// (follow the leader). A segment without a direction takes the wind pose's.
+/// Gives segments their rest length, from root to tip, keeping each one's own direction. Pulling
+/// every node after the moved one below it would fold a blade that the blend has shortened.
+///
+/// A segment that was turned right over is blended along its own line and would flip from down to up
+/// between two sub-steps: it takes a fixed side instead.
 pub fn restore_lengths<R: Real>(nodes: &mut Nodes<R>, wind: &Nodes<R>, segments: usize, length: R) {
+    let mut below = nodes[0];
     for j in 0..segments {
-        let rest = (wind[j + 1] - wind[j]).unit_or(crate::base::Vec3::UP);
-        let direction = (nodes[j + 1] - nodes[j]).unit_or(rest);
+        let rest = wind[j + 1] - wind[j];
+        let mut segment = nodes[j + 1] - below;
+        below = nodes[j + 1];
+        if is_turned_over(segment, rest) {
+            segment += across(rest.unit_or(Vec3::UP)) * (length * R::of(ASIDE));
+        }
+        let direction = segment.unit_or(rest.unit_or(Vec3::UP));
         nodes[j + 1] = nodes[j] + direction * length;
     }
+}
+
+/// Sine of the angle within which a segment counts as turned right over, and the part of its length
+/// by which it then keeps aside.
+pub const ASIDE: f64 = 1e-3;
+
+/// True of a blend of opposite directions: short, and along the line of both.
+fn is_turned_over<R: Real>(segment: Vec3<R>, rest: Vec3<R>) -> bool {
+    let square = rest.length_squared();
+    let off_line = segment.cross(rest).length_squared();
+    segment.length_squared() < R::of(0.25) * square
+        && off_line < R::of(ASIDE * ASIDE) * square * square
 }
 
 /// The nodes of a plant touched `age` ticks ago with the given offsets (one per segment).
@@ -113,12 +135,12 @@ fn blend_angles<R: Real>(
 /// From one unit vector towards another by a share of the angle between them.
 fn turned<R: Real>(from: Vec3<R>, to: Vec3<R>, share: R) -> Vec3<R> {
     let cos = from.dot(to).to_f64().clamp(-1.0, 1.0);
-    let across = to - from * R::of(cos);
+    let off = to - from * R::of(cos);
     // Opposite directions have no plane of their own: the one through a fixed axis.
-    let sideways = super::relax::across(from);
-    let angle = libm::atan2(across.length().to_f64(), cos) * share.to_f64();
-    let across = across.unit_or(sideways);
-    from * R::of(libm::cos(angle)) + across * R::of(libm::sin(angle))
+    let sideways = across(from);
+    let angle = libm::atan2(off.length().to_f64(), cos) * share.to_f64();
+    let aside = off.unit_or(sideways);
+    from * R::of(libm::cos(angle)) + aside * R::of(libm::sin(angle))
 }
 
 /// The printed form (O09 eq. 8): the offset of a plant touched `age` ticks ago is scaled by t³
@@ -230,6 +252,27 @@ mod tests {
                 "{hz} Hz: {}",
                 half_life(hz)
             );
+        }
+    }
+
+    #[test]
+    fn a_straight_blade_rises_straight_and_to_one_side() {
+        let wind = upright();
+        for degrees in [90.0, 150.0, 179.9, 180.0_f64] {
+            let a = degrees.to_radians();
+            let offsets: Vec<_> = (1..=8)
+                .map(|j| vec3(a.sin(), a.cos(), 0.0) * (0.05 * f64::from(j)) - wind[j as usize])
+                .collect();
+            for age in 1..=240 {
+                let nodes = recovering_pose(&wind, &offsets, age, &LENGTHS, 0.05);
+                // A straight blade is as long from root to tip as along its segments.
+                let length = (nodes[8] - nodes[0]).length();
+                assert!(
+                    (length - 0.4).abs() < 1e-9,
+                    "{degrees}° age {age}: {length}"
+                );
+                assert!(nodes[8].x > -1e-9, "{degrees}° age {age}: {:?}", nodes[8]);
+            }
         }
     }
 

@@ -68,7 +68,8 @@ impl ColourMap {
 
 /// Colour of the ground at a world place, linear RGB.
 pub fn base_colour(terrain: &Terrain, ground: &HeightGrid, x: f64, z: f64) -> [f32; 3] {
-    blend(terrain, x, z, steepness(ground, x, z))
+    let [cx, cz] = ground.centre_m;
+    blend(terrain, x - cx, z - cz, steepness(ground, x, z))
 }
 
 /// Length of the ground's gradient over two spacings: the triangles' own slopes have edges that

@@ -47,6 +47,13 @@ pub enum TerrainError {
 /// If a size is not more than 0 and finite, the samples are more than [`MOST_SAMPLES`] (checked
 /// before anything is allocated), or the height map is missing or too small.
 pub fn height_grid(terrain: &Terrain, assets: &Assets) -> Result<HeightGrid, TerrainError> {
+    Ok(HeightGrid {
+        centre_m: terrain.centre_m,
+        ..about_the_origin(terrain, assets)?
+    })
+}
+
+fn about_the_origin(terrain: &Terrain, assets: &Assets) -> Result<HeightGrid, TerrainError> {
     match &terrain.ground {
         Ground::Flat { size_m, spacing_m } => {
             let [columns, rows] = sample_counts(*size_m, *spacing_m)?;
@@ -131,6 +138,7 @@ fn mapped(
         columns: map.columns,
         rows: map.rows,
         spacing_m,
+        centre_m: [0.0; 2],
         heights_m: map.samples.iter().map(height).collect(),
     })
 }

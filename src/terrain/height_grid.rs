@@ -8,7 +8,7 @@
 use crate::base::Real;
 
 /// A rectangle of height samples. Place 0, 0 of the *field* is the corner with the smallest x and
-/// z; the world's x = z = 0 is the rectangle's centre.
+/// z.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightGrid {
     /// Samples along x and z, at least 2 each.
@@ -16,6 +16,8 @@ pub struct HeightGrid {
     pub rows: u32,
     /// Distance of neighbouring samples, in metres.
     pub spacing_m: f32,
+    /// World x and z of the rectangle's centre.
+    pub centre_m: [f64; 2],
     /// Heights in metres, `rows` runs of `columns`.
     pub heights_m: Vec<f32>,
 }
@@ -26,6 +28,7 @@ impl HeightGrid {
             columns,
             rows,
             spacing_m,
+            centre_m: [0.0; 2],
             heights_m: vec![0.0; columns as usize * rows as usize],
         }
     }
@@ -43,7 +46,8 @@ impl HeightGrid {
 
     /// World place of the field's corner, x and z.
     pub fn corner_in_world(&self) -> [f64; 2] {
-        self.size_m().map(|s| -0.5 * s)
+        let size_m = self.size_m();
+        [0, 1].map(|a| self.centre_m[a] - 0.5 * size_m[a])
     }
 
     /// The sample at a column and row, which the edges repeat.
@@ -94,8 +98,8 @@ impl HeightGrid {
 
     /// True where a world place lies over the ground.
     pub fn contains(&self, x: f64, z: f64) -> bool {
-        let [w, d] = self.size_m();
-        x.abs() <= 0.5 * w && z.abs() <= 0.5 * d
+        let ([w, d], [cx, cz]) = (self.size_m(), self.centre_m);
+        (x - cx).abs() <= 0.5 * w && (z - cz).abs() <= 0.5 * d
     }
 
     /// Smallest and largest height, in metres.

@@ -238,7 +238,8 @@ impl Play {
         let ground = &meadow.field.ground;
         let Some(&first) = places.first() else {
             let [width, depth] = ground.size_m();
-            let middle = Vec3::new(0.0, ground.height_in_world(0.0, 0.0), 0.0);
+            let [x, z] = ground.centre_m;
+            let middle = Vec3::new(x, ground.height_in_world(x, z), z);
             return (middle, 0.4 * width.min(depth));
         };
         let low = places.iter().fold(first, |a, b| extreme(a, *b, f64::min));

@@ -16,7 +16,7 @@ pub struct CollidePass {
 impl CollidePass {
     /// # Errors
     /// The shader's.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, workgroup: u32) -> Result<Self, GpuError> {
         let bindings = [
             (0, Access::Uniform),
             (1, Access::Read),
@@ -26,7 +26,7 @@ impl CollidePass {
             (5, Access::Read),
             (6, Access::Read),
         ];
-        let collide = Kernel::new(gpu, "collide.wgsl", "collide", &bindings)?;
+        let collide = Kernel::new(gpu, "collide.wgsl", "collide", &bindings, workgroup)?;
         Ok(Self { collide })
     }
 

@@ -8,10 +8,11 @@ pub mod depth_cube;
 pub mod recover;
 pub mod relax;
 
-use super::wgsl::{self, WgslFile};
+use super::wgsl::{self, Constant, WgslFile};
 use super::{Buffer, FieldBuffers, Gpu, GpuError, PassTimer};
 
-/// Invocations of a workgroup: the plants of a tile, or the texels of a cube, that run together.
+/// Invocations of a workgroup: the plants of a tile, or the texels of a cube, that run together. Any
+/// number gives the same results; this one fits the widths of all hardware.
 pub const WORKGROUP: u32 = 64;
 /// Most workgroups along one side of a dispatch (WebGPU's default limit).
 pub const MOST_GROUPS: u32 = 65_535;
@@ -49,7 +50,7 @@ pub struct Recording<'a> {
 }
 
 impl Kernel {
-    /// Compiles entry point `name` of a pass's file.
+    /// Compiles entry point `name` of a pass's file for workgroups of a size.
     ///
     /// # Errors
     /// The shader's, with file and line.
@@ -58,6 +59,7 @@ impl Kernel {
         path: &'static str,
         name: &'static str,
         bindings: &[(u32, Access)],
+        workgroup: u32,
     ) -> Result<Self, GpuError> {
         let entries: Vec<_> = bindings.iter().map(|&b| layout_entry(b)).collect();
         let layout = gpu
@@ -66,7 +68,11 @@ impl Kernel {
                 label: Some(name),
                 entries: &entries,
             });
-        let source = wgsl::assemble(pass_file(path)?, &[wgsl::SHARED])?;
+        let size = Constant {
+            name: "WORKGROUP",
+            value: workgroup.into(),
+        };
+        let source = wgsl::assemble_with(pass_file(path)?, &[wgsl::SHARED], &[size])?;
         let field = FieldBuffers::layout(gpu);
         Ok(Self {
             pipeline: gpu.compute_pipeline(&source, name, &[&field, &layout])?,

@@ -14,14 +14,14 @@ pub struct RecoverPass {
 impl RecoverPass {
     /// # Errors
     /// The shader's.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, workgroup: u32) -> Result<Self, GpuError> {
         let bindings = [
             (0, Access::Uniform),
             (1, Access::Read),
             (3, Access::Read),
             (7, Access::Write),
         ];
-        let recover = Kernel::new(gpu, "recover.wgsl", "recover", &bindings)?;
+        let recover = Kernel::new(gpu, "recover.wgsl", "recover", &bindings, workgroup)?;
         Ok(Self { recover })
     }
 

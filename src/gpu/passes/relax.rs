@@ -17,7 +17,7 @@ pub struct RelaxPass {
 impl RelaxPass {
     /// # Errors
     /// The shader's.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, workgroup: u32) -> Result<Self, GpuError> {
         let counting = [(4, Access::Write), (7, Access::Write)];
         let bindings = [
             (0, Access::Uniform),
@@ -29,8 +29,8 @@ impl RelaxPass {
             (6, Access::Read),
         ];
         Ok(Self {
-            count_groups: Kernel::new(gpu, "relax.wgsl", "count_groups", &counting)?,
-            relax: Kernel::new(gpu, "relax.wgsl", "relax", &bindings)?,
+            count_groups: Kernel::new(gpu, "relax.wgsl", "count_groups", &counting, workgroup)?,
+            relax: Kernel::new(gpu, "relax.wgsl", "relax", &bindings, workgroup)?,
         })
     }
 

@@ -137,9 +137,10 @@ pub(super) fn on_the_ground(key: &Key, scene: &Scene, field: &FieldSize) -> Chec
             continue;
         };
         for (axis, (&at, size_m)) in near_m.iter().zip(field.size_m).enumerate() {
+            let centre_m = scene.terrain.centre_m[axis];
             let ground = Range {
-                min: -0.5 * size_m,
-                max: 0.5 * size_m,
+                min: centre_m - 0.5 * size_m,
+                max: centre_m + 0.5 * size_m,
                 unit: "m, where the ground ends",
             };
             within(&key.nth(i).field("near_m").nth(axis), at, &ground)?;

@@ -5,6 +5,7 @@ use crate::scene::{Grass, Ground, Solver, Species, Terrain, Wind, limits};
 
 pub(super) fn terrain(key: &Key, terrain: &Terrain) -> Check {
     ground(&key.field("ground"), &terrain.ground)?;
+    within_each(&key.field("centre_m"), &terrain.centre_m, &limits::PLACE)?;
     for (field, rgb) in [
         ("lush_rgb", terrain.lush_rgb),
         ("dry_rgb", terrain.dry_rgb),

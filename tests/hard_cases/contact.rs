@@ -1,0 +1,297 @@
+//! Bodies that stay where they are: lying, buried in, or with a vertex in a place without a clear
+//! way out.
+
+use std::collections::BTreeMap;
+
+use libtest_mimic::Failed;
+use sward::run::Engine;
+use sward::scene::Collider;
+use sward::sim::measure::GrassState;
+
+use super::Measured;
+use super::rig::{
+    CALM, FRAME_TICKS, PlantKey, Rig, SECOND_TICKS, Setting, all_in_wind_pose, apart, ensure,
+};
+
+/// A plant at rest under a body moves no more than this per displayed frame, in metres.
+const REST_M_PER_FRAME: f64 = 1e-5;
+/// Largest relative change of a segment's length while a body lies still.
+const REST_STRAIN: f64 = 0.02;
+/// Depth that a closed form may leave in `rest`, in metres.
+const REST_DEPTH_M: f64 = 1e-4;
+
+fn ball_scene(setting: &Setting, place: &str, motion: &str) -> String {
+    format!(
+        "(duration_s: 20, terrain: (ground: Flat(size_m: (4, 3))), {CALM}, bodies: [
+            (name: \"ball\", shape: Ball(radius_m: 0.15), position_m: {place}, motion: {motion},
+             collider: {})])",
+        setting.collider()
+    )
+}
+
+/// Ten seconds of a ball laid into the grass. A method that pushes out and then restores lengths
+/// leaves the blades inside by turns and creeps for ever.
+pub fn rest_laid(setting: &Setting) -> Measured {
+    rest(setting, &ball_scene(setting, "(0.1, 0.15, -0.05)", "Free"))
+}
+
+/// Dropped from twice its radius. Recovery starts anew after every bounce, so blades that are held
+/// only by turns sink in and are pushed out again.
+pub fn rest_dropped(setting: &Setting) -> Measured {
+    rest(setting, &ball_scene(setting, "(-0.3, 0.45, 0.2)", "Free"))
+}
+
+/// Rolled in at 1 m/s and stopped. Blades that were overrun lie in a heap, which a solver of few
+/// rounds never quite sorts out.
+pub fn rest_rolled(setting: &Setting) -> Measured {
+    let way = "Path(waypoints: [(at_s: 0, position_m: (-0.8, 0.15, 0)),
+        (at_s: 0.8, position_m: (0, 0.15, 0), rotation_deg: (0, 0, -305)),
+        (at_s: 1, position_m: (0.1, 0.15, 0), rotation_deg: (0, 0, -344))])";
+    rest(setting, &ball_scene(setting, "(-0.8, 0.15, 0)", way))
+}
+
+/// Runs until 10 s after the body stopped and measures from the second second on: every plant that
+/// the body still touches, and once all others have recovered, every plant.
+fn rest(setting: &Setting, scene: &str) -> Measured {
+    let mut rig = setting.rig(scene)?;
+    let stopped = run_until_still(&mut rig)?;
+    let settled = stopped + SECOND_TICKS;
+    rig.run_to(settled, FRAME_TICKS)?;
+    rig.seen = Default::default();
+    let recovered = settled + rig.meadow.recovery_ticks();
+    let mut before = rig.look()?;
+    let (mut largest_m, mut compared) = (0.0_f64, 0_u32);
+    let mut restless: BTreeMap<PlantKey, f64> = BTreeMap::new();
+    while rig.meadow.ticks < stopped + 10 * SECOND_TICKS {
+        rig.ticks(FRAME_TICKS)?;
+        let now = rig.look()?;
+        for (key, plant) in &now {
+            let Some(old) = before.get(key) else {
+                continue;
+            };
+            if old.touched_at < settled && rig.meadow.ticks <= recovered {
+                continue;
+            }
+            let moved = apart(&plant.nodes, &old.nodes);
+            compared += 1;
+            largest_m = largest_m.max(moved);
+            if moved > REST_M_PER_FRAME {
+                let most = restless.entry(*key).or_default();
+                *most = most.max(moved);
+            }
+        }
+        before = now;
+    }
+    let depth_m = rig.seen.depth_m;
+    let strain = rig.seen.strain;
+    let text = format!(
+        "{largest_m:.1e} m per frame (limit {REST_M_PER_FRAME:.0e}), strain {strain:.4} (limit \
+         {REST_STRAIN}), {depth_m:.1e} m deep, {} of {} plants restless",
+        restless.len(),
+        before.len(),
+    );
+    ensure(compared > 1000, || {
+        format!("only {compared} plants seen at rest")
+    })?;
+    let shallow = setting.collider != Collider::Analytic || depth_m <= REST_DEPTH_M;
+    let rests = largest_m <= REST_M_PER_FRAME && strain <= REST_STRAIN && shallow;
+    ensure(rests, || text.clone())?;
+    rig.nothing_is_inside()?;
+    Ok(text)
+}
+
+/// Runs until no body has moved for a tenth of a second, and gives the tick since which they stand.
+fn run_until_still(rig: &mut Rig) -> Result<u32, Failed> {
+    let mut still = 0;
+    while still < SECOND_TICKS / 10 {
+        rig.tick()?;
+        let links = rig.meadow.bodies.links();
+        let moves = links.iter().any(|link| link.from != link.to);
+        still = if moves { 0 } else { still + 1 };
+        ensure(rig.meadow.ticks < 20 * SECOND_TICKS, || {
+            "the body does not come to rest within 20 s".into()
+        })?;
+    }
+    Ok(rig.meadow.ticks - still)
+}
+
+/// Where a body is put so that a chosen vertex lies in one of its degenerate places, in the body's
+/// coordinates.
+const DEGENERATE: &[(&str, &str, [f64; 3])] = &[
+    ("centre of a ball", "Ball(radius_m: 0.15)", [0.0; 3]),
+    ("centre of a box", "Box(size_m: (0.3, 0.3, 0.3))", [0.0; 3]),
+    (
+        "medial axis of a box",
+        "Box(size_m: (0.3, 0.3, 0.3))",
+        [0.05, 0.05, 0.0],
+    ),
+    (
+        "edge of a box",
+        "Box(size_m: (0.3, 0.3, 0.3))",
+        [0.15, 0.15, 0.02],
+    ),
+    (
+        "corner of a box",
+        "Box(size_m: (0.3, 0.3, 0.3))",
+        [0.15, 0.15, 0.15],
+    ),
+    // 64 texels over 0.302 m with the skin: borders lie at whole multiples from the middle.
+    (
+        "texel border of a box",
+        "Box(size_m: (0.3, 0.3, 0.3))",
+        [10.0 * 0.302 / 64.0, 0.04, 0.0],
+    ),
+    (
+        "axis of a capsule",
+        "Capsule(radius_m: 0.1, length_m: 0.2)",
+        [0.0, 0.03, 0.0],
+    ),
+    (
+        "centre of a cylinder",
+        "Cylinder(radius_m: 0.12, height_m: 0.24)",
+        [0.0; 3],
+    ),
+    (
+        "rim of a cylinder",
+        "Cylinder(radius_m: 0.12, height_m: 0.24)",
+        [0.12, 0.12, 0.0],
+    ),
+];
+/// Frames over which a vertex must leave through the same face.
+const STEADY_FRAMES: u32 = 100;
+/// Frames after which blades under a fixed body have found their place.
+const SETTLED_FRAMES: u32 = 30;
+
+/// A vertex at the centre of a body, on its medial axis, an edge, a corner, a texel's border: no
+/// way out is the shortest there. Choosing anew in every frame makes the blade jump from side to
+/// side, and a normal made of a zero vector is not a number.
+pub fn degenerate_point(setting: &Setting) -> Measured {
+    let mut flips = Vec::new();
+    let mut pushed = 0;
+    for &(what, shape, place) in DEGENERATE {
+        let (mut rig, vertex) = with_vertex_at(setting, shape, place)?;
+        // The chosen vertex from its first contact on.
+        rig.ticks(FRAME_TICKS)?;
+        let first = faces(&mut rig)?;
+        let mut before = first.clone();
+        for frame in 1..=SETTLED_FRAMES + STEADY_FRAMES {
+            rig.ticks(FRAME_TICKS)?;
+            let now = faces(&mut rig)?;
+            if frame <= STEADY_FRAMES && now.get(vertex) != first.get(vertex) {
+                flips.push(format!(
+                    "{what}: the vertex leaves through another face, frame {frame}"
+                ));
+            }
+            // Every other one once its blade has settled.
+            let changed = now
+                .iter()
+                .zip(&before)
+                .filter(|(now, before)| now != before)
+                .count();
+            if frame > SETTLED_FRAMES && changed > 0 {
+                flips.push(format!("{what}: {changed} faces changed in frame {frame}"));
+            }
+            before = now;
+        }
+        rig.look()?;
+        pushed += before.iter().filter(|&&face| face != 0).count();
+    }
+    ensure(pushed > 100, || {
+        format!("only {pushed} vertices were pushed")
+    })?;
+    ensure(flips.is_empty(), || flips.join("; "))?;
+    Ok(format!(
+        "{} places, {pushed} pushed vertices, no face changed in {STEADY_FRAMES} frames",
+        DEGENERATE.len()
+    ))
+}
+
+/// A fixed body placed so that the fifth node of some plant lies at `place` of the body, and the
+/// index of that node's word in [`faces`].
+fn with_vertex_at(setting: &Setting, shape: &str, place: [f64; 3]) -> Result<(Rig, usize), Failed> {
+    let scene = |body: &str| {
+        format!(
+            "(duration_s: 10, terrain: (ground: Flat(size_m: (3, 3))), {CALM}, bodies: [{body}])"
+        )
+    };
+    let mut bare = setting.rig(&scene(""))?;
+    let plants = bare.engine.near(&bare.meadow, [0.1, 0.1], 0.3)?;
+    let plant = plants.first().ok_or("no plant near the middle")?;
+    let node = plant.nodes[5].to_f64();
+    let at = [0, 1, 2].map(|a| plant.origin[a] + node[a] - place[a]);
+    let mut rig = setting.rig(&scene(&format!(
+        "(name: \"thing\", shape: {shape}, position_m: ({}, {}, {}), motion: Fixed, collider: {})",
+        at[0],
+        at[1],
+        at[2],
+        setting.collider()
+    )))?;
+    rig.tick()?;
+    let segments = rig.meadow.scene.solver.segments as usize;
+    let per_tile = rig.meadow.field.grid.plants_per_tile() as usize;
+    let tiles = rig.meadow.work.tiles.clone();
+    for (n, tile) in tiles.iter().enumerate() {
+        let standing = rig.engine.standing(&rig.meadow, tile)?;
+        let found = standing
+            .iter()
+            .position(|p| p.root_in_world() == plant.root_in_world());
+        // Every triangle of a whole density has all its plants, so ranks are places.
+        if let Some(rank) = found {
+            return Ok((rig, (n * per_tile + rank) * segments + 4));
+        }
+    }
+    Err("the plant is in no active tile".into())
+}
+
+/// The face words of every vertex of the active tiles.
+fn faces(rig: &mut Rig) -> Result<Vec<u32>, Failed> {
+    let (engine, meadow) = (&rig.engine, &rig.meadow);
+    let slabs = meadow.work.tiles.iter().map(|tile| tile.slab);
+    Ok(match engine {
+        Engine::Cpu(grass) => slabs
+            .filter_map(|slab| grass.slab(slab))
+            .flat_map(|slab| slab.faces.clone())
+            .collect(),
+        Engine::Reference(_) => Vec::new(),
+        Engine::Gpu(engine) => {
+            let state = engine.grass.read_state(meadow)?;
+            slabs
+                .filter_map(|slab| state.slab(slab))
+                .flat_map(|slab| slab.faces.clone())
+                .collect()
+        }
+    })
+}
+
+/// Largest relative change of a segment's length under a body that covers whole plants.
+const BURIED_STRAIN: f64 = 0.05;
+
+/// A box larger than any blade set onto the roots. There is no way out for most vertices: pushing
+/// them through the nearest face stretches the blades across the body.
+pub fn buried(setting: &Setting) -> Measured {
+    let mut rig = setting.rig(&format!(
+        "(duration_s: 10, terrain: (ground: Flat(size_m: (4, 4))), {CALM}, bodies: [
+            (name: \"box\", shape: Box(size_m: (1.2, 0.8, 1)), position_m: (0.1, 0.4, -0.1),
+             rotation_deg: (0, 25, 0), motion: Fixed, collider: {})],
+          script: [(at_s: 2, action: Remove(body: \"box\"))])",
+        setting.collider()
+    ))?;
+    rig.run_to(2 * SECOND_TICKS, 8)?;
+    let strain = rig.seen.strain;
+    let snapshot = rig.engine.snapshot(&rig.meadow)?;
+    let pinched = snapshot.pinched;
+    let buried = snapshot.buried;
+    let lifted = rig.meadow.ticks;
+    rig.run_to(lifted + rig.meadow.recovery_ticks(), 8)?;
+    let plants = rig.look()?;
+    let text = format!(
+        "strain {strain:.4} (limit {BURIED_STRAIN}), {buried} plants buried, {pinched} vertices \
+         pinched"
+    );
+    ensure(strain <= BURIED_STRAIN && buried > 0, || text.clone())?;
+    ensure(!plants.is_empty() && all_in_wind_pose(&plants), || {
+        "not every plant is back in its wind pose".into()
+    })?;
+    rig.nothing_is_inside()?;
+    Ok(text)
+}

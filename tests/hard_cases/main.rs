@@ -1,0 +1,149 @@
+//! The hard cases: what breaks a naive method, each with the limit it must keep. Every case runs
+//! on the cpu engine and on a graphics adapter, and, where bodies are involved, with depth cubes
+//! and with closed forms. Without an adapter the gpu trials are ignored, unless
+//! `SWARD_REQUIRE_GPU=1`. Every trial prints what it measured.
+//!
+//! The long run of 24 simulated hours is not part of the test run:
+//! `cargo test --release --test hard_cases -- --ignored day`.
+
+#![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
+
+mod contact;
+mod input;
+mod limits;
+mod long;
+mod motion;
+mod order;
+mod place;
+mod recovery;
+mod rig;
+mod shapes;
+mod time;
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use sward::gpu::Gpu;
+use sward::run::Device;
+use sward::scene::Collider;
+
+use rig::Setting;
+
+/// What a trial measured, in words.
+type Measured = Result<String, Failed>;
+type Check = fn(&Setting<'_>) -> Measured;
+
+/// One hard case.
+struct Case {
+    name: &'static str,
+    colliders: &'static [Collider],
+    check: Check,
+}
+
+const BOTH: &[Collider] = &[Collider::Cube, Collider::Analytic];
+/// For bodies that are too thin for a depth cube, which `auto` knows.
+const THIN: &[Collider] = &[Collider::Auto, Collider::Analytic];
+const ALL: &[Collider] = &[Collider::Auto, Collider::Cube, Collider::Analytic];
+/// For cases in which no body has a part, or one is as good as another.
+const ANY: &[Collider] = &[Collider::Auto];
+
+const fn case(name: &'static str, colliders: &'static [Collider], check: Check) -> Case {
+    Case {
+        name,
+        colliders,
+        check,
+    }
+}
+
+const CASES: &[Case] = &[
+    case("rest_laid", BOTH, contact::rest_laid),
+    case("rest_dropped", BOTH, contact::rest_dropped),
+    case("rest_rolled", BOTH, contact::rest_rolled),
+    case("degenerate_point", BOTH, contact::degenerate_point),
+    case("buried", BOTH, contact::buried),
+    case("roll_rates", BOTH, motion::roll_rates),
+    case("roll_reference", BOTH, motion::roll_reference),
+    case("bullet", BOTH, motion::bullet),
+    case("teleport", BOTH, place::teleport),
+    case("far_away", BOTH, place::far_away),
+    case("far_in_a_wide_meadow", BOTH, place::far_in_a_wide_meadow),
+    case("bad_time", ANY, time::bad_time),
+    case("bad_time_in_the_window", ANY, time::bad_time_in_the_window),
+    case("ragged_time", BOTH, time::ragged_time),
+    case("release", BOTH, recovery::release),
+    case("flattened", ANY, recovery::flattened),
+    case("gusty_recovery", BOTH, recovery::gusty),
+    case("sharded", BOTH, order::sharded),
+    case("order_of_bodies", BOTH, order::bodies),
+    case("order_of_threads", BOTH, order::threads),
+    case("poison", BOTH, input::poison),
+    case(
+        "removed_while_touching",
+        BOTH,
+        input::removed_while_touching,
+    ),
+    case("degenerate_plants", BOTH, input::degenerate_plants),
+    case("full_of_tiles", BOTH, limits::tiles),
+    case("full_of_bodies", ANY, limits::bodies),
+    case("full_of_plants", ANY, limits::plants),
+    case("plate", THIN, shapes::plate),
+    case("rod", THIN, shapes::rod),
+    case("cup", ALL, shapes::cup),
+    case("long", BOTH, long::short_form),
+];
+
+/// Named commands: hours of simulated time.
+const NAMED: &[Case] = &[case("day", ANY, long::day)];
+
+fn main() {
+    let arguments = Arguments::from_args();
+    let required = std::env::var_os("SWARD_REQUIRE_GPU").is_some_and(|value| value == "1");
+    let processor = Arc::new(Ok(Device::Processor));
+    let graphics = Gpu::headless().and_then(Device::graphics);
+    let graphics = Arc::new(graphics.map_err(|error| error.to_string()));
+    let skips_graphics = graphics.is_err() && !required;
+
+    let measured = Arc::new(Mutex::new(Vec::new()));
+    let mut trials = Vec::new();
+    for (cases, named) in [(CASES, false), (NAMED, true)] {
+        for case in cases {
+            for &collider in case.colliders {
+                for (engine, device) in [("cpu", &processor), ("gpu", &graphics)] {
+                    let name = match collider {
+                        Collider::Auto => format!("{engine}::{}", case.name),
+                        Collider::Cube => format!("{engine}::{}::cube", case.name),
+                        Collider::Analytic => format!("{engine}::{}::analytic", case.name),
+                    };
+                    let (device, check, told) = (device.clone(), case.check, measured.clone());
+                    let ignored = named || (engine == "gpu" && skips_graphics);
+                    let title = name.clone();
+                    let run = move || run(&device, check, collider, &title, &told);
+                    trials.push(Trial::test(name, run).with_ignored_flag(ignored));
+                }
+            }
+        }
+    }
+    let conclusion = libtest_mimic::run(&arguments, trials);
+    let mut told = measured.lock().unwrap_or_else(PoisonError::into_inner);
+    told.sort();
+    for line in told.iter() {
+        println!("{line}");
+    }
+    conclusion.exit();
+}
+
+fn run(
+    device: &Result<Device, String>,
+    check: Check,
+    collider: Collider,
+    title: &str,
+    told: &Mutex<Vec<String>>,
+) -> Result<(), Failed> {
+    let device = device.as_ref().map_err(String::as_str)?;
+    let started = std::time::Instant::now();
+    let measured = check(&Setting { device, collider })?;
+    let seconds = started.elapsed().as_secs_f64();
+    let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
+    told.push(format!("{title}: {measured} ({seconds:.1} s)"));
+    Ok(())
+}
