@@ -210,14 +210,9 @@ pub const METHODS: &[NamedMethod] = &[
             s.method.sweep_share = 1.0;
         },
     ),
-    named(
-        "sweep-1/8",
-        "sweeps",
-        "an eighth of its half thickness",
-        |s| {
-            s.method.sweep_share = 0.125;
-        },
-    ),
+    named("sweep-1/2", "sweeps", "half of its half thickness", |s| {
+        s.method.sweep_share = 0.5;
+    }),
     named("rounds-1", "rounds", "one round of lengths and push", |s| {
         s.rounds = [1, 1]
     }),

@@ -34,7 +34,7 @@ impl Default for Method {
             push: Push::Ratio,
             springs: Springs::Default,
             recovery: Recovery::Lengths,
-            sweep_share: 0.5,
+            sweep_share: 0.125,
             grass_steps: 1,
         }
     }

@@ -17,6 +17,7 @@ use crate::scene::method::Recovery;
 use super::collide;
 use super::contact::Touch;
 use super::depth_cube::{COVER_MARGIN_M, DepthCube};
+use super::fault::Fault;
 use super::meadow::Meadow;
 use super::recover::{Fading, fade_literally, is_back, recovering_pose};
 use super::relax::{self, Place, RelaxSettings};
@@ -156,7 +157,10 @@ impl<R: Real> Grass<R> {
     /// Pushes the touched plants out, restores their shape and stores their offsets.
     pub fn relax(&mut self, meadow: &Meadow) {
         let start = Instant::now();
-        let settings = RelaxSettings::new(&meadow.scene.solver);
+        let settings = RelaxSettings {
+            planted: meadow.planted,
+            ..RelaxSettings::new(&meadow.scene.solver)
+        };
         let grown = &self.grown;
         let mut jobs: Vec<Job<R>> = meadow
             .work
@@ -248,9 +252,12 @@ pub fn poses<R: Real>(
 ) -> (Nodes<R>, Nodes<R>) {
     let segments = field.table.segments as usize;
     let wind = wind_pose(plant, &field.table, work.wind.bend(&tile.anchor, plant));
-    let touched_at = slab.touched_at[place as usize];
+    let mut touched_at = slab.touched_at[place as usize];
     if touched_at == 0 {
         return (wind, wind);
+    }
+    if fading.planted.is(Fault::TimerPerTile) {
+        touched_at = slab.touched_at.iter().copied().max().unwrap_or(0);
     }
     let first = place as usize * segments;
     let pose = recovering_pose(

@@ -14,6 +14,7 @@ use crate::scene::assets::Assets;
 use crate::scene::{Action, Event, Invalid, Scene, Wind, validate};
 use crate::terrain::TerrainError;
 
+use super::fault::Planted;
 use super::parts::{Parts, Tested, takes_whole_bodies};
 use super::slab::slab_bytes;
 use super::work::{Mover, TileWork, Work};
@@ -35,6 +36,8 @@ pub struct Meadow {
     /// Tiles that woke or came to rest in the current sub-step.
     pub changes: Changes,
     pub counters: Counters,
+    /// A mistake planted by a test.
+    pub planted: Planted,
     /// Sub-steps done.
     pub ticks: u32,
     /// Events in the order of their times.
@@ -116,6 +119,7 @@ impl Meadow {
             work: Work::default(),
             changes: Changes::default(),
             counters: Counters::default(),
+            planted: Planted::default(),
             ticks: 0,
             script,
             script_state: ScriptState { done: 0, wind },
@@ -257,7 +261,14 @@ impl Meadow {
                 TileState::Colliding => near.get(&tile).map_or(&[][..], Vec::as_slice),
                 TileState::Recovering => &[],
             };
-            let contacts = work.add_contacts(&self.field, &self.parts, solver, &anchor, movers);
+            let contacts = work.add_contacts(
+                &self.field,
+                &self.parts,
+                solver,
+                &anchor,
+                movers,
+                self.planted,
+            );
             work.tiles.push(TileWork {
                 tile,
                 slab: active.slab,

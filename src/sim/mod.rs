@@ -5,6 +5,7 @@ pub mod collide;
 pub mod contact;
 pub mod cpu;
 pub mod depth_cube;
+pub mod fault;
 pub mod meadow;
 pub mod measure;
 pub mod parts;

@@ -20,6 +20,7 @@ use crate::base::{Real, Vec3};
 use crate::field::Nodes;
 use crate::scene::method::Recovery;
 
+use super::fault::Planted;
 use super::meadow::Meadow;
 use super::relax::across;
 
@@ -29,6 +30,7 @@ pub struct Fading<R> {
     /// Δt/T.
     pub step_over_t: R,
     pub recovery: Recovery,
+    pub planted: Planted,
 }
 
 impl<R: Real> Fading<R> {
@@ -36,6 +38,7 @@ impl<R: Real> Fading<R> {
         Self {
             step_over_t: R::of(meadow.step_over_t()),
             recovery: meadow.scene.solver.method.recovery,
+            planted: meadow.planted,
         }
     }
 }
@@ -161,6 +164,7 @@ mod tests {
     const LENGTHS: Fading<f64> = Fading {
         step_over_t: 1.0 / 240.0,
         recovery: Recovery::Lengths,
+        planted: Planted::NONE,
     };
 
     fn upright() -> Nodes<f64> {

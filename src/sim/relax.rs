@@ -2,8 +2,8 @@
 //!
 //! Push out, then (springs and lengths along the ground, push out, ground) until no segment is strained by more
 //! than the limit, at least and at most as often as the solver says; the ground wins over the
-//! body. The sub-step is cut into sweeps, so that no body crosses more than half its half
-//! thickness at once.
+//! body. The sub-step is cut into sweeps, so that no body crosses more than an eighth of its
+//! half thickness at once.
 //!
 //! Springs (O09 eq. 6-7, responsibilities r₁ + r₂ = 1): structural ones are replaced by lengths
 //! from root to tip, which hold exactly after one pass; bend springs join every second node, rest
@@ -19,6 +19,7 @@ use crate::scene::method::{Collide, Springs};
 use crate::terrain::HeightGrid;
 
 use super::contact::Touch;
+use super::fault::{Fault, Planted};
 use super::springs::{self, LiteralBlade, relax_blade};
 
 /// What the kernel needs besides the plant.
@@ -33,6 +34,7 @@ pub struct RelaxSettings<R> {
     pub strain_limit: R,
     /// Rounds go on, up to the most, while one still moved a node out of a body.
     pub until_clear: bool,
+    pub planted: Planted,
 }
 
 impl<R: Real> RelaxSettings<R> {
@@ -46,6 +48,7 @@ impl<R: Real> RelaxSettings<R> {
             most_rounds: solver.rounds[1],
             strain_limit: R::of_f32(solver.strain_limit),
             until_clear: solver.method.collide == Collide::Exact,
+            planted: Planted::default(),
         }
     }
 }
@@ -103,7 +106,7 @@ pub fn respond<R: Real>(
             continue;
         }
         let rate = settings.bend / R::of(f64::from(sweeps));
-        bend_springs(nodes, place, rate);
+        bend_springs(nodes, place, rate, settings.planted);
         for round in 1..=settings.most_rounds {
             follow_pushed(nodes, pushed, place);
             pushed = lay_out(nodes, faces, &bodies, place);
@@ -114,6 +117,9 @@ pub fn respond<R: Real>(
             if round >= settings.fewest_rounds && strain <= settings.strain_limit && clear {
                 break;
             }
+        }
+        if settings.planted.is(Fault::SpringsLast) {
+            bend_springs(nodes, place, rate, settings.planted);
         }
     }
     rounds_used
@@ -188,7 +194,7 @@ pub(super) fn across<R: Real>(n: Vec3<R>) -> Vec3<R> {
 }
 
 /// `rate` is κΔt.
-fn bend_springs<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, rate: R) {
+fn bend_springs<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, rate: R, planted: Planted) {
     let twice_a = R::of(2.0) * rate / (R::ONE + R::of(2.0) * rate);
     for j in 0..place.segments.saturating_sub(1) {
         let rest = (place.wind[j + 2] - place.wind[j]).length();
@@ -196,7 +202,8 @@ fn bend_springs<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, rate: R) {
         let length = across.length();
         let direction = across.unit_or(Vec3::UP);
         let correction = direction * (twice_a * (length - rest));
-        let [lower, upper] = springs::shares([j == 0, false]).map(R::of);
+        let is_root = j == 0 && !planted.is(Fault::RootWeight);
+        let [lower, upper] = springs::shares([is_root, false]).map(R::of);
         nodes[j] += correction * lower;
         nodes[j + 2] -= correction * upper;
     }

@@ -5,6 +5,7 @@ use crate::bodies::{Link, RigidShape};
 use crate::field::{Anchor, Bounds, Field, TileId, WindNow};
 use crate::scene::Solver;
 
+use super::fault::{Fault, Planted};
 use super::parts::{Parts, Tested};
 
 /// The work of one sub-step.
@@ -47,7 +48,7 @@ pub struct Contact {
     /// Index into [`Bodies::shapes`](crate::bodies::Bodies::shapes).
     pub shape: u32,
     /// Pieces the sub-step is cut into for this body: it travels at most a share of its half
-    /// thickness in each, half of it unless the method says otherwise.
+    /// thickness in each, an eighth of it unless the method says otherwise.
     pub sweeps: u32,
     /// `anchor_from_part` at the start and the end of the sub-step.
     pub from: Pose<f64>,
@@ -151,6 +152,7 @@ impl Work {
         solver: &Solver,
         anchor: &Anchor,
         movers: &[&Mover],
+        planted: Planted,
     ) -> std::ops::Range<u32> {
         let first = self.contacts.len() as u32;
         let origin = crate::base::Vec3::of(field.grid.anchor_in_world(anchor, &field.ground));
@@ -159,6 +161,11 @@ impl Work {
             let range = parts.of_shape(link.shape);
             for part in range.clone() {
                 let local = |world_from_body: Pose<f64>| {
+                    let world_from_body = if planted.is(Fault::WorldCoordinatesInF32) {
+                        world_from_body.cast::<f32>().cast()
+                    } else {
+                        world_from_body
+                    };
                     let part_pose = parts.parts[part].pose;
                     Pose {
                         turn: part_pose.turn.then(world_from_body.turn),

@@ -159,8 +159,9 @@ const DEGENERATE: &[(&str, &str, [f64; 3])] = &[
 ];
 /// Frames over which a vertex must leave through the same face.
 const STEADY_FRAMES: u32 = 100;
-/// Frames after which blades under a fixed body have found their place.
-const SETTLED_FRAMES: u32 = 30;
+/// Frames after which blades under a fixed body have found their place: the second that every case
+/// of a body at rest leaves them.
+const SETTLED_FRAMES: u32 = 60;
 
 /// A vertex at the centre of a body, on its medial axis, an edge, a corner, a texel's border: no
 /// way out is the shortest there. Choosing anew in every frame makes the blade jump from side to
