@@ -26,6 +26,7 @@ const ROLL: &str = r#"(
 
 /// What a law looks at: a meadow after a while, and the worst on the way there.
 struct Seen {
+    ticks: u32,
     /// By the bits of the root.
     plants: BTreeMap<[u64; 2], Standing<f32>>,
     depth_over_limit: f64,
@@ -56,6 +57,7 @@ fn run(loaded: &LoadedScene, fault: Option<Fault>, seconds: f64) -> Seen {
         .flatten()
         .filter(|plant| plant.touched_at > 0);
     Seen {
+        ticks,
         plants: standing
             .map(|plant| (plant.root_in_world().map(f64::to_bits), plant))
             .collect(),
@@ -171,8 +173,9 @@ fn weights_upon_the_blended_pose_depend_on_the_rate() {
         let mut loaded = scene(ROLL);
         loaded.scene.solver.substep_s = 1.0 / hz;
         loaded.scene.solver.method.recovery = recovery;
-        let seen = run(&loaded, None, 1.5);
-        let offsets: Vec<f64> = seen.plants.values().map(Standing::offset_m).collect();
+        let seen = run(&loaded, None, 1.0);
+        let let_go = seen.plants.values().filter(|p| p.touched_at < seen.ticks);
+        let offsets: Vec<f64> = let_go.map(Standing::offset_m).collect();
         offsets.iter().sum::<f64>() / offsets.len().max(1) as f64
     };
     let apart = |recovery| {
@@ -182,7 +185,7 @@ fn weights_upon_the_blended_pose_depend_on_the_rate() {
     let (right, wrong) = (apart(Recovery::Lengths), apart(Recovery::Literal));
     // The rate changes the contact itself by some per cent.
     assert!(right < 0.1, "{right}");
-    assert!(wrong > 0.5, "{wrong}");
+    assert!(wrong > 0.3, "{wrong}");
 }
 
 #[test]
@@ -201,12 +204,7 @@ fn without_sweeps_a_fast_ball_misses_blades() {
 #[test]
 fn nearest_texels_leave_nodes_inside() {
     let deepest = |sampling| {
-        let text = ROLL.replace(
-            "Ball(radius_m: 0.15)",
-            "ConvexHull(points_m: [(0.2, 0, 0), (-0.2, 0, 0), (0, 0.15, 0), (0, -0.15, 0), \
-             (0, 0, 0.2), (0, 0, -0.2)])",
-        );
-        let mut loaded = scene(&text);
+        let mut loaded = scene(ROLL);
         loaded.scene.solver.method.collide = Collide::Cube;
         loaded.scene.solver.method.sampling = sampling;
         loaded.scene.solver.cube_resolution = 16;
