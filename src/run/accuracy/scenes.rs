@@ -18,7 +18,6 @@ pub struct AccuracyScene {
 const COMMON: &str = r#"
     terrain: (ground: Flat(size_m: (8, 4))),
     grass: (density_per_m2: 256, species: [(name: "meadow grass", height_m: (0.38, 0.42), stiffness: (90, 160), lean_deg: (2, 12))]),
-    solver: (recovery_s: 0.5),
     wind: (strength: 0, gust: 0, flutter: 0),
 "#;
 

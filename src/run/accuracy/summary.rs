@@ -122,18 +122,25 @@ pub fn choices(summary: &[MethodSummary], half_blade_m: f64) -> Vec<Choice> {
         let fit = summary.iter().filter(move |m| m.is_within(within_m));
         fit.min_by(|a, b| a.mean_ms_per_s.total_cmp(&b.mean_ms_per_s))
     };
-    let nearest = summary
-        .iter()
-        .filter(|m| m.misses.is_empty())
-        .filter_map(|m| Some((m, m.mean_rms_m?)))
-        .min_by(|a, b| a.1.total_cmp(&b.1));
+    let nearest = |needs_limits: bool| {
+        let fit = summary
+            .iter()
+            .filter(|m| m.misses.is_empty() || !needs_limits)
+            .filter_map(|m| Some((m, m.mean_rms_m?)));
+        let nearest = fit.min_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.map(|found| found.0)
+    };
     [
         ("cheapest that misses no limit", cheapest(f64::INFINITY)),
         (
             "cheapest within half a blade's width in every scene",
             cheapest(half_blade_m),
         ),
-        ("nearest to the reference", nearest.map(|found| found.0)),
+        (
+            "nearest to the reference that misses no limit",
+            nearest(true),
+        ),
+        ("nearest to the reference, limits aside", nearest(false)),
     ]
     .map(|(need, method)| Choice {
         need,
@@ -222,7 +229,7 @@ mod tests {
         assert_eq!(summary[1].misses, ["b: poses"]);
         let choices = choices(&summary, 0.0035);
         let chosen = |n: usize| choices[n].method.as_ref().map(|m| m.method.as_str());
-        assert_eq!([chosen(0), chosen(1), chosen(2)], [Some(DEFAULT); 3]);
+        assert_eq!([0, 1, 2, 3].map(chosen), [Some(DEFAULT); 4]);
         assert!(verdict_on_default(&summary, 0.0035).contains("is the cheapest left of half"));
     }
 

@@ -96,6 +96,8 @@ fn write_summary(summary: &[MethodSummary], out: &mut impl Write) -> io::Result<
     )?;
     for m in summary {
         let what = method(&m.method).map_or("", |method| method.what);
+        // A bar would end the cell.
+        let what = what.replace('|', "\\|");
         writeln!(
             out,
             "| `{}` | {what} | {:.1} | {} | {} | {} | {} |",
