@@ -9,7 +9,9 @@ use plotters::prelude::*;
 use super::summary::{BUDGET_MS_PER_S, MethodSummary};
 use super::{Report, SceneReport};
 
-const SIZE: (u32, u32) = (1100, 720);
+/// Pixels of a plot, and of the part at its right in which curves are named.
+const SIZE: (u32, u32) = (1200, 760);
+const LEGEND_WIDTH: u32 = 170;
 /// Errors below this are drawn at it: a logarithm needs a number above 0.
 const LEAST_MM: f64 = 1e-4;
 const LEAST_MS: f64 = 1e-2;
@@ -104,18 +106,17 @@ type DrawResult = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 fn drawn(area: &Area<'_>, title: &str, points: &[Point], lines: &Lines) -> DrawResult {
     area.fill(&WHITE)?;
+    let (left_area, right_area) = area.split_horizontally(SIZE.0 - LEGEND_WIDTH);
     let errors = points.iter().flat_map(|p| [Some(p.error_mm), p.worst_mm]);
     let marks = [Some(lines.half_blade_mm), lines.floor_mm];
     let (left, right) = span(errors.chain(marks).flatten(), LEAST_MM);
     let times = points.iter().map(|p| p.ms_per_s);
     let (low, high) = span(times.chain([BUDGET_MS_PER_S]), LEAST_MS);
-    let mut chart = ChartBuilder::on(area)
-        .caption(title, ("sans-serif", 18))
+    let mut chart = ChartBuilder::on(&left_area)
+        .caption(title, ("sans-serif", 20))
         .margin(12)
-        .x_label_area_size(44)
-        .y_label_area_size(60)
-        // Room for the names of the curves.
-        .margin_right(150)
+        .x_label_area_size(48)
+        .y_label_area_size(64)
         .build_cartesian_2d((left..right).log_scale(), (low..high).log_scale())?;
     chart
         .configure_mesh()
@@ -123,32 +124,44 @@ fn drawn(area: &Area<'_>, title: &str, points: &[Point], lines: &Lines) -> DrawR
         .y_desc("collide and relax, ms per simulated second")
         .x_label_formatter(&|x| short(*x))
         .y_label_formatter(&|y| short(*y))
-        .light_line_style(WHITE.mix(0.0))
+        .label_style(("sans-serif", 14))
         .draw()?;
-    let vertical = |x: f64| vec![(x, low), (x, high)];
+    let vertical = |x: f64| vec![(x.max(LEAST_MM), low), (x.max(LEAST_MM), high)];
     let level = vec![(left, BUDGET_MS_PER_S), (right, BUDGET_MS_PER_S)];
-    let half_blade = vertical(lines.half_blade_mm);
-    line(&mut chart, half_blade, RED.to_rgba(), "½ blade width")?;
-    line(&mut chart, level, BLUE.to_rgba(), "frame budget")?;
+    let mut legend = vec![
+        ("½ blade width".to_owned(), RED.to_rgba()),
+        ("frame budget".to_owned(), BLUE.to_rgba()),
+    ];
+    dashed(&mut chart, vertical(lines.half_blade_mm), RED.to_rgba())?;
+    dashed(&mut chart, level, BLUE.to_rgba())?;
     if let Some(floor_mm) = lines.floor_mm {
-        let at = floor_mm.max(LEAST_MM);
-        line(&mut chart, vertical(at), BLACK.mix(0.5), "noise floor")?;
+        dashed(&mut chart, vertical(floor_mm), BLACK.mix(0.5))?;
+        legend.push(("noise floor".to_owned(), BLACK.mix(0.5)));
     }
     for (number, (family, curve)) in families(points).into_iter().enumerate() {
-        draw_family(
-            &mut chart,
-            &family,
-            &curve,
-            Palette99::pick(number).to_rgba(),
-        )?;
+        let colour = Palette99::pick(number).to_rgba();
+        draw_family(&mut chart, &curve, colour)?;
+        legend.push((family, colour));
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.8))
-        .border_style(BLACK.mix(0.3))
-        .label_font(("sans-serif", 12))
-        .draw()
+    draw_legend(&right_area, &legend)
+}
+
+fn draw_legend(area: &Area<'_>, entries: &[(String, RGBAColor)]) -> DrawResult {
+    let words = |text: &str, y: i32| {
+        Text::new(text.to_owned(), (24, y - 7), ("sans-serif", 14).into_font())
+    };
+    let mut y = 60;
+    for (name, colour) in entries {
+        let sample = PathElement::new([(0, y), (18, y)], colour.stroke_width(2));
+        area.draw(&sample)?;
+        area.draw(&words(name, y))?;
+        y += 22;
+    }
+    y += 12;
+    area.draw(&Circle::new((9, y), 4, BLACK.filled()))?;
+    area.draw(&words("meets every limit", y))?;
+    area.draw(&Cross::new((9, y + 22), 5, BLACK.stroke_width(2)))?;
+    area.draw(&words("misses a limit", y + 22))
 }
 
 /// The points of each family, in the order of its knob, which is that of the list of methods.
@@ -163,31 +176,16 @@ fn families(points: &[Point]) -> BTreeMap<String, Vec<&Point>> {
     families
 }
 
-fn line(
-    chart: &mut Chart<'_, '_>,
-    points: Vec<(f64, f64)>,
-    colour: RGBAColor,
-    name: &str,
-) -> DrawResult {
-    chart
-        .draw_series(DashedLineSeries::new(points, 6, 4, colour.stroke_width(1)))?
-        .label(name)
-        .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour));
+fn dashed(chart: &mut Chart<'_, '_>, points: Vec<(f64, f64)>, colour: RGBAColor) -> DrawResult {
+    let series = DashedLineSeries::new(points, 6, 4, colour.stroke_width(1));
+    chart.draw_series(series)?;
     Ok(())
 }
 
-fn draw_family(
-    chart: &mut Chart<'_, '_>,
-    family: &str,
-    points: &[&Point],
-    colour: RGBAColor,
-) -> DrawResult {
+fn draw_family(chart: &mut Chart<'_, '_>, points: &[&Point], colour: RGBAColor) -> DrawResult {
     let place = |p: &Point| (p.error_mm.max(LEAST_MM), p.ms_per_s.max(LEAST_MS));
     let curve = points.iter().map(|p| place(p));
-    chart
-        .draw_series(LineSeries::new(curve, colour.stroke_width(2)))?
-        .label(family)
-        .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
+    chart.draw_series(LineSeries::new(curve, colour.stroke_width(2)))?;
     for point in points {
         let (x, y) = place(point);
         if let Some(worst_mm) = point.worst_mm {
@@ -201,7 +199,7 @@ fn draw_family(
         } else {
             chart.draw_series([Circle::new((x, y), 4, colour.filled())])?;
         }
-        let label = ("sans-serif", 10).into_font().color(&BLACK.mix(0.7));
+        let label = ("sans-serif", 12).into_font().color(&BLACK.mix(0.7));
         let above = EmptyElement::at((x, y)) + Text::new(point.method.clone(), (5, -12), label);
         chart.draw_series([above])?;
     }
