@@ -55,6 +55,18 @@ impl Lane {
         })
     }
 
+    /// Lays a scene out in `f64` with settings of a reference, which go beyond what a scene may
+    /// ask for, so that they come after it was laid out. They leave the field as it is.
+    ///
+    /// # Errors
+    ///
+    /// A scene that cannot be laid out.
+    pub fn reference(loaded: &LoadedScene, solver: Solver) -> Result<Self, RunError> {
+        let mut lane = Self::new(loaded, &loaded.scene.solver, Kind::Double)?;
+        lane.meadow.scene.solver = solver;
+        Ok(lane)
+    }
+
     /// Runs the sub-steps up to a time.
     ///
     /// # Errors

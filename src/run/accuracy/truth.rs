@@ -7,7 +7,7 @@
 //! and for a body of one convex part the closed form itself: the floor holds the error of time and
 //! of splitting a body, not that of the model.
 
-use super::lane::{Kind, Lane, end_of_frame_s, frames};
+use super::lane::{Lane, end_of_frame_s, frames};
 use crate::run::compare::{Comparison, Difference, Plants};
 use crate::run::scenario::RunError;
 use crate::scene::method::Collide;
@@ -32,8 +32,8 @@ impl Truth {
     /// A scene that cannot be laid out, or an event that cannot happen.
     pub fn record(loaded: &LoadedScene, mut progress: impl FnMut(f64)) -> Result<Self, RunError> {
         let scene = &loaded.scene;
-        let mut first = Lane::new(loaded, &reference::solver(&scene.solver), Kind::Double)?;
-        let mut second = Lane::new(loaded, &second_solver(&scene.solver), Kind::Double)?;
+        let mut first = Lane::reference(loaded, reference::solver(&scene.solver))?;
+        let mut second = Lane::reference(loaded, second_solver(&scene.solver))?;
         let mut comparison = Comparison::default();
         let count = frames(scene.duration_s);
         let mut recorded = Vec::new();
