@@ -1,5 +1,7 @@
 //! Every method over all scenes, and which one to choose.
 
+use std::collections::BTreeMap;
+
 use super::{Report, Row};
 use crate::run::methods::DEFAULT;
 
@@ -18,8 +20,8 @@ pub struct MethodSummary {
     pub worst_rms_m: Option<f64>,
     pub worst_scene: String,
     pub mean_ms_per_s: f64,
-    /// Limits missed, as `scene: what`.
-    pub misses: Vec<String>,
+    /// Limits missed, each with the number of scenes.
+    pub misses: BTreeMap<&'static str, usize>,
     /// Root mean square over the scenes of the three parts of the error, in metres.
     pub rounding_m: Option<f64>,
     pub precision_m: Option<f64>,
@@ -34,10 +36,10 @@ impl MethodSummary {
             let error = |row: &Row| row.rms_m.unwrap_or(f64::INFINITY);
             error(a).total_cmp(&error(b))
         });
-        let misses = rows.iter().flat_map(|row| {
-            let misses = row.misses().into_iter();
-            misses.map(|what| format!("{}: {what}", row.scene))
-        });
+        let mut misses = BTreeMap::new();
+        for what in rows.iter().flat_map(|row| row.misses()) {
+            *misses.entry(what).or_default() += 1;
+        }
         Self {
             method: first.method,
             family: first.family,
@@ -46,11 +48,18 @@ impl MethodSummary {
             worst_rms_m: worst.and_then(|row| row.rms_m),
             worst_scene: worst.map(|row| row.scene.clone()).unwrap_or_default(),
             mean_ms_per_s: mean(&rows.iter().map(|row| row.ms_per_s).collect::<Vec<_>>()),
-            misses: misses.collect(),
+            misses,
             rounding_m: root_mean_square(rows, |row| row.rounding_rms_m),
             precision_m: root_mean_square(rows, |row| row.precision_rms_m),
             method_m: root_mean_square(rows, |row| row.method_rms_m),
         }
+    }
+
+    /// The limits missed, in words.
+    pub fn misses_in_words(&self) -> String {
+        let words = |(what, scenes): (&&str, &usize)| format!("{what} in {scenes}");
+        let all: Vec<String> = self.misses.iter().map(words).collect();
+        all.join(", ")
     }
 
     /// Left of a line in the plot in every scene, with no limit missed.
@@ -93,6 +102,17 @@ impl Report {
         names
             .map(|name| MethodSummary::of(&of_method(name)))
             .collect()
+    }
+
+    /// The cheapest point of each scene that misses no limit.
+    pub fn cheapest_by_scene(&self) -> Vec<(&str, Option<&Row>)> {
+        let mut found: Vec<(&str, Option<&Row>)> = Vec::new();
+        for scene in &self.scenes {
+            let fit = scene.rows.iter().filter(|row| row.misses().is_empty());
+            let cheapest = fit.min_by(|a, b| a.ms_per_s.total_cmp(&b.ms_per_s));
+            found.push((&scene.name, cheapest));
+        }
+        found
     }
 
     /// Half the width of a blade, the narrowest of all scenes, in metres.
@@ -171,8 +191,12 @@ pub fn verdict_on_default(summary: &[MethodSummary], half_blade_m: f64) -> Strin
         )
     };
     if !default.misses.is_empty() {
-        let misses = default.misses.join(", ");
-        return format!("The default misses {misses} ({}).", about(default));
+        return format!(
+            "The default misses a limit in some of the {} scenes: {} ({}).",
+            default.scenes,
+            default.misses_in_words(),
+            about(default)
+        );
     }
     let within_m = if default.is_within(half_blade_m) {
         half_blade_m
@@ -226,7 +250,7 @@ mod tests {
             .into();
         assert_eq!(summary[0].worst_rms_m, Some(0.003));
         assert_eq!(summary[0].mean_ms_per_s, 30.0);
-        assert_eq!(summary[1].misses, ["b: poses"]);
+        assert_eq!(summary[1].misses_in_words(), "poses in 1");
         let choices = choices(&summary, 0.0035);
         let chosen = |n: usize| choices[n].method.as_ref().map(|m| m.method.as_str());
         assert_eq!([0, 1, 2, 3].map(chosen), [Some(DEFAULT); 4]);

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::cost::LITERAL;
+use super::measure::MOST_RMS_M;
 use super::summary::{MethodSummary, choices, verdict_on_default};
 use super::{CostRow, FLOOR, Report, Row, SceneReport};
 use crate::run::methods::{DEFAULT, method};
@@ -83,6 +84,19 @@ fn write_choice(
             None => writeln!(out, "| {} | none | | |", choice.need)?,
         }
     }
+    for (scene, cheapest) in report.cheapest_by_scene() {
+        write!(out, "| cheapest that misses no limit in `{scene}` | ")?;
+        match cheapest {
+            Some(row) => writeln!(
+                out,
+                "`{}` | {:.1} | {} there |",
+                row.method,
+                row.ms_per_s,
+                mm(row.rms_m)
+            )?,
+            None => writeln!(out, "none | | |")?,
+        }
+    }
     writeln!(out)
 }
 
@@ -106,7 +120,7 @@ fn write_summary(summary: &[MethodSummary], out: &mut impl Write) -> io::Result<
             mm(m.mean_rms_m),
             mm(m.worst_rms_m),
             m.worst_scene,
-            m.misses.join(", ")
+            m.misses_in_words()
         )?;
     }
     writeln!(out)
@@ -243,6 +257,13 @@ fn write_scene(scene: &SceneReport, out: &mut impl Write) -> io::Result<()> {
             row.over_push_m * 1e3,
             row.strain,
             row.misses().join(", ")
+        )?;
+    }
+    if scene.floor.rms_m.is_some_and(|floor| floor > MOST_RMS_M) {
+        writeln!(
+            out,
+            "\nThe two references are farther apart than the limit of poses: what this scene says of \
+             poses and sides is no verdict on a method."
         )?;
     }
     if !scene.left_out.is_empty() {
