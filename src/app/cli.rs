@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
-use super::commands::{bench, blade_shape, list, render, replay, run, view};
+use super::commands::{bench, blade_shape, list, render, replay, report, run, view};
 
 /// Responsive grass: bodies press real imprints into a meadow.
 ///
@@ -30,6 +30,7 @@ pub enum Command {
     Replay(replay::Arguments),
     Render(render::Arguments),
     Bench(bench::Arguments),
+    Report(report::Arguments),
     BladeShape(blade_shape::Arguments),
     List(list::Arguments),
     /// Print the JSON schema of a scene

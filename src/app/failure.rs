@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::field::blade_shape::ShapeError;
 use crate::gpu::GpuError;
 use crate::render::RenderError;
+use crate::run::accuracy::{AccuracyError, PlotError};
 use crate::run::{Exit, RunError, StageError};
 use crate::scene::SceneError;
 
@@ -26,6 +27,9 @@ pub enum Failure {
     /// The platform refuses a window, for a reason in its own words.
     #[error("no window: {0}")]
     Window(String),
+    /// What no user can mend, in words.
+    #[error("{0}")]
+    Internal(String),
     #[error("cannot write to stdout: {0}")]
     Output(#[from] io::Error),
     #[error("cannot write {}: {source}", path.display())]
@@ -42,7 +46,9 @@ impl Failure {
             Self::Stage(error) => exit_of_stage(error),
             Self::Gpu(error) => exit_of_gpu(error),
             Self::Output(_) if self.is_closed_pipe() => Exit::Ok,
-            Self::Window(_) | Self::Output(_) | Self::File { .. } => Exit::Internal,
+            Self::Internal(_) | Self::Window(_) | Self::Output(_) | Self::File { .. } => {
+                Exit::Internal
+            }
         }
     }
 
@@ -85,6 +91,22 @@ fn exit_of_stage(error: &StageError) -> Exit {
         StageError::Render(RenderError::PictureSize { .. } | RenderError::PictureBytes { .. })
         | StageError::UnknownCamera { .. } => Exit::Usage,
         StageError::Render(_) => Exit::Internal,
+    }
+}
+
+impl From<AccuracyError> for Failure {
+    fn from(error: AccuracyError) -> Self {
+        match error {
+            AccuracyError::Run(error) => Self::Run(error),
+            // Not stdout: the error says itself what could not be written.
+            error @ AccuracyError::Store(_) => Self::Internal(error.to_string()),
+        }
+    }
+}
+
+impl From<PlotError> for Failure {
+    fn from(error: PlotError) -> Self {
+        Self::Internal(error.to_string())
     }
 }
 

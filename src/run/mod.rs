@@ -1,8 +1,10 @@
 //! Running scenes: the clock, what is measured, what is judged, reports and benches.
 
+pub mod accuracy;
 pub mod against;
 pub mod bench;
 mod check;
+pub mod compare;
 pub mod engine;
 mod exit;
 mod jitter;

@@ -9,6 +9,7 @@ pub mod list;
 mod outputs;
 pub mod render;
 pub mod replay;
+pub mod report;
 pub mod run;
 mod scene_file;
 mod schema;
@@ -32,6 +33,7 @@ pub fn run(command: Option<Command>) -> Result<Exit, Failure> {
         Command::Run(arguments) => run::run(&arguments, out),
         Command::Render(arguments) => render::run(&arguments, out),
         Command::Bench(arguments) => bench::run(&arguments, out),
+        Command::Report(arguments) => report::run(&arguments, out),
         Command::BladeShape(arguments) => blade_shape::run(&arguments, out),
         Command::Replay(arguments) => replay::run(&arguments, out),
         Command::List(arguments) => list::run(&arguments, out),

@@ -78,7 +78,8 @@ enum Truth {
     Reference,
 }
 
-fn method_names() -> PossibleValuesParser {
+/// The names of methods as values of an option.
+pub(super) fn method_names() -> PossibleValuesParser {
     let value = |method: &NamedMethod| PossibleValue::new(method.name).help(method.what);
     PossibleValuesParser::new(METHODS.iter().map(value))
 }

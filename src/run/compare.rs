@@ -1,0 +1,197 @@
+//! How far two runs of one scene differ: poses, imprints, plants on another side of a body.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::base::Vec3;
+use crate::base::statistics::quantile;
+use crate::field::{Field, TileId};
+use crate::gpu::GpuError;
+use crate::sim::Meadow;
+use crate::sim::measure::Standing;
+
+use super::engine::Engine;
+
+/// A plant by its tile and number.
+pub type PlantId = (TileId, u32);
+/// Plants as they stand at one instant.
+pub type Plants = BTreeMap<PlantId, Standing<f64>>;
+
+/// A plant leans if its tip is this far from the vertical over its root.
+const LEANS_DEG: f64 = 30.0;
+/// A plant stands on another side of a body if its tip is this far from the other run's, over the
+/// plant's length: errors of a method are millimetres, the way around a body is a good part of a
+/// blade.
+const OTHER_SIDE: f64 = 0.25;
+
+/// Every plant that a body has touched and that is not back at rest.
+///
+/// # Errors
+///
+/// The engine's.
+pub fn touched_plants(meadow: &Meadow, engine: &mut Engine) -> Result<Plants, GpuError> {
+    let mut plants = Plants::new();
+    for tile in &meadow.work.tiles {
+        for plant in engine.standing(meadow, tile)? {
+            if plant.touched_at != 0 {
+                plants.insert((tile.tile, plant.place), plant);
+            }
+        }
+    }
+    Ok(plants)
+}
+
+/// What differed so far between a run and the one that is taken for true.
+#[derive(Clone, Debug, Default)]
+pub struct Comparison {
+    /// Plants that ever were on another side.
+    flipped: BTreeSet<PlantId>,
+    touched: BTreeSet<PlantId>,
+    /// Mean squared distance of the nodes of a plant at a frame, for plants on the same side, and
+    /// the plant's length.
+    squares_m2: Vec<(f64, f64)>,
+    /// Plants that lean in both, and in either, summed over frames.
+    lean_both: u64,
+    lean_either: u64,
+}
+
+/// What a comparison came to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Difference {
+    /// Over touched plants on the same side of the bodies, all frames.
+    pub pose_rms_m: f64,
+    pub pose_p95_m: f64,
+    /// The same over each plant's length.
+    pub pose_rms_lengths: f64,
+    pub pose_p95_lengths: f64,
+    /// Overlap of the plants that lean more than 30°; `None` where none ever leaned.
+    pub imprint_iou: Option<f64>,
+    /// Plants that ever were on another side of a body than in the reference.
+    pub side_flips: u64,
+    pub touched_plants: u64,
+    /// World x and z of their roots.
+    pub flipped_roots_m: Vec<[f64; 2]>,
+}
+
+impl Comparison {
+    /// Takes in one instant. A plant that only one run has touched stands in the wind in the
+    /// other.
+    pub fn frame(&mut self, ours: &Plants, theirs: &Plants) {
+        for (&id, truth) in theirs {
+            let plant = ours
+                .get(&id)
+                .map_or_else(|| Cow::Owned(resting(truth)), Cow::Borrowed);
+            self.plant(id, &plant, truth);
+        }
+        for (&id, plant) in ours {
+            if !theirs.contains_key(&id) {
+                self.plant(id, plant, &resting(plant));
+            }
+        }
+    }
+
+    fn plant(&mut self, id: PlantId, plant: &Standing<f64>, truth: &Standing<f64>) {
+        self.touched.insert(id);
+        let leans = [plant, truth].map(|p| p.lean_rad() > LEANS_DEG.to_radians());
+        self.lean_both += u64::from(leans == [true, true]);
+        self.lean_either += u64::from(leans != [false, false]);
+        let distances = distances_m(plant, truth);
+        let tip_m = distances.last().copied().unwrap_or(0.0);
+        let length_m = f64::from(truth.plant.height_m);
+        if tip_m > OTHER_SIDE * length_m {
+            self.flipped.insert(id);
+        } else {
+            let sum: f64 = distances.iter().map(|d| d * d).sum();
+            let mean = sum / distances.len().max(1) as f64;
+            self.squares_m2.push((mean, length_m));
+        }
+    }
+
+    /// What differed over all frames, in a field of plants.
+    pub fn finish(&self, field: &Field) -> Difference {
+        let in_lengths = |&(square, length_m): &(f64, f64)| square / length_m.powi(2);
+        let lengths: Vec<f64> = self.squares_m2.iter().map(in_lengths).collect();
+        let metres: Vec<f64> = self.squares_m2.iter().map(|s| s.0).collect();
+        let overlap = || self.lean_both as f64 / self.lean_either as f64;
+        let roots = self.flipped.iter().filter_map(|&id| root_m(field, id));
+        Difference {
+            pose_rms_m: root_of_mean(&metres),
+            pose_p95_m: root_of_p95(&metres),
+            pose_rms_lengths: root_of_mean(&lengths),
+            pose_p95_lengths: root_of_p95(&lengths),
+            imprint_iou: (self.lean_either > 0).then(overlap),
+            side_flips: self.flipped.len() as u64,
+            touched_plants: self.touched.len() as u64,
+            flipped_roots_m: roots.collect(),
+        }
+    }
+}
+
+fn root_of_mean(squares: &[f64]) -> f64 {
+    // The sum of nothing is −0, which would be printed.
+    let sum = squares.iter().fold(0.0, |sum, s| sum + s);
+    (sum / squares.len().max(1) as f64).sqrt()
+}
+
+fn root_of_p95(squares: &[f64]) -> f64 {
+    quantile(squares, 0.95).unwrap_or(0.0).sqrt()
+}
+
+fn resting(plant: &Standing<f64>) -> Standing<f64> {
+    Standing {
+        nodes: plant.wind.clone(),
+        ..plant.clone()
+    }
+}
+
+fn root_m(field: &Field, (tile, place): PlantId) -> Option<[f64; 2]> {
+    let anchor = field.grid.anchor_of(tile, &field.ground);
+    let origin = field.grid.anchor_in_world(&anchor, &field.ground);
+    let [x, _, z] = field.plant(&anchor, tile, place)?.root_in_anchor;
+    Some([origin[0] + f64::from(x), origin[2] + f64::from(z)])
+}
+
+/// Distances of the true plant's movable nodes from the places at the same arc length in the other:
+/// its nodes, where it has as many, else points on its segments.
+fn distances_m(plant: &Standing<f64>, truth: &Standing<f64>) -> Vec<f64> {
+    let segments = truth.nodes.len().saturating_sub(1);
+    let nodes = truth.nodes.iter().enumerate().skip(1);
+    nodes
+        .filter_map(|(n, &node)| Some((at_share(&plant.nodes, n, segments)? - node).length()))
+        .collect()
+}
+
+/// The place at the share `part / parts` of the length of a line of equal segments.
+fn at_share(nodes: &[Vec3<f64>], part: usize, parts: usize) -> Option<Vec3<f64>> {
+    let along = part * (nodes.len().checked_sub(1)?);
+    let (whole, rest) = (along / parts, along % parts);
+    let from = *nodes.get(whole)?;
+    if rest == 0 {
+        return Some(from);
+    }
+    let to = *nodes.get(whole + 1)?;
+    Some(from + (to - from) * (rest as f64 / parts as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_other_segments_meet_at_equal_arc_length() {
+        let line = |n: u32| -> Vec<Vec3<f64>> {
+            (0..=n)
+                .map(|k| Vec3::new(0.0, f64::from(k) / f64::from(n), 0.0))
+                .collect()
+        };
+        for (ours, theirs) in [(8, 8), (3, 8), (16, 8), (8, 3)] {
+            let nodes = line(ours);
+            for (part, truth) in line(theirs).iter().enumerate() {
+                let found = at_share(&nodes, part, theirs as usize).expect("on the line");
+                // A straight line is its own interpolation up to one rounding.
+                assert!((found - *truth).length() <= f64::EPSILON);
+            }
+        }
+        assert!(at_share(&[], 0, 8).is_none());
+    }
+}

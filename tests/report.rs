@@ -1,0 +1,112 @@
+//! `sward report accuracy` from outside: files, resuming, and what it refuses before it starts.
+
+#![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
+#![cfg(feature = "app")]
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+/// A ball that stands in a square metre of grass for three frames.
+const TINY: &str = r#"(
+    description: "A ball stands in the grass.",
+    duration_s: 0.1,
+    terrain: (ground: Flat(size_m: (1, 1))),
+    grass: (density_per_m2: 32),
+    bodies: [(name: "ball", shape: Ball(radius_m: 0.2), position_m: (0, 0.2, 0), motion: Fixed)],
+)"#;
+
+fn report(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_sward"))
+        .args(["report", "accuracy", "--no-gpu"])
+        .args(arguments)
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program starts")
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("no signal ended it")
+}
+
+/// An empty folder of this test, with the tiny scene beside it.
+fn folder(name: &str) -> (PathBuf, String) {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .join("report")
+        .join(name);
+    if folder.exists() {
+        fs::remove_dir_all(&folder).expect("the test's own folder");
+    }
+    fs::create_dir_all(&folder).expect("a writable target folder");
+    let scene = folder.join("tiny.ron");
+    fs::write(&scene, TINY).expect("a writable target folder");
+    (folder, scene.display().to_string())
+}
+
+#[test]
+fn a_report_writes_its_files_and_resumes() {
+    let (folder, scene) = folder("resume");
+    let out = folder.join("out");
+    let out_text = out.display().to_string();
+    let arguments = [
+        "--scene", &scene, "--method", "default", "--method", "analytic", "--out", &out_text,
+    ];
+    let first = report(&arguments);
+    assert_eq!(
+        code(&first),
+        0,
+        "{}",
+        String::from_utf8_lossy(&first.stderr)
+    );
+    let markdown = String::from_utf8(first.stdout).expect("text");
+    assert_eq!(
+        fs::read_to_string(out.join("accuracy.md")).expect("the report"),
+        markdown
+    );
+    for plot in ["tiny.svg", "all-scenes.svg"] {
+        let svg = fs::read_to_string(out.join(plot)).expect("a plot");
+        assert!(
+            svg.contains("analytic") && svg.contains("default"),
+            "{plot}"
+        );
+    }
+    let points = fs::read_to_string(out.join("points.csv")).expect("the points");
+    // Header, noise floor, two methods.
+    assert_eq!(points.lines().count(), 4, "{points}");
+
+    // As if the report had been killed while it wrote the last point.
+    fs::write(out.join("points.csv"), &points[..points.len() - 20]).expect("a writable file");
+    let resumed = report(&[&arguments[..], &["--resume"]].concat());
+    assert_eq!(code(&resumed), 0);
+    let again = fs::read_to_string(out.join("points.csv")).expect("the points");
+    // The whole rows are the same to the last digit of their times: they were not run again.
+    let kept = |text: &str| text.lines().take(3).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(kept(&again), kept(&points));
+    assert_eq!(again.lines().count(), 4);
+    assert!(String::from_utf8_lossy(&resumed.stderr).contains("measured again"));
+}
+
+#[test]
+fn an_unknown_method_is_2_with_the_list() {
+    let refused = report(&["--method", "bogus"]);
+    assert_eq!(code(&refused), 2);
+    let text = String::from_utf8_lossy(&refused.stderr);
+    for name in ["default", "paper", "voxels-32"] {
+        assert!(text.contains(name), "{text}");
+    }
+    assert_eq!(code(&report(&["--resume"])), 2);
+}
+
+#[test]
+fn an_unknown_scene_is_3_and_a_folder_that_cannot_be_written_is_5() {
+    assert_eq!(code(&report(&["--scene", "no such scene"])), 3);
+    let (folder, scene) = folder("refused");
+    // A file stands where the folder would have to be; not even root can write into it.
+    let file = folder.join("file");
+    fs::write(&file, "").expect("a writable target folder");
+    let out = file.join("out").display().to_string();
+    let refused = report(&["--scene", &scene, "--out", &out]);
+    assert_eq!(code(&refused), 5);
+    assert!(refused.stdout.is_empty());
+    assert!(String::from_utf8_lossy(&refused.stderr).contains(&out));
+}
