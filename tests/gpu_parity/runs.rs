@@ -80,6 +80,9 @@ impl Tracks {
     }
 }
 
+/// The recovery and 0.2 s after the ball was taken away, in seconds.
+const RESTING_S: f64 = 4.8;
+
 /// Runs the rolling ball on both engines until it is gone and the grass rests again.
 fn compare_tracks(device: &Device, collider: Collider) -> Result<(), Failed> {
     let (mut here, mut there) = (rolling_ball(collider)?, rolling_ball(collider)?);
@@ -99,6 +102,17 @@ fn compare_tracks(device: &Device, collider: Collider) -> Result<(), Failed> {
                     "tick {}: {} plants not finite",
                     here.ticks, snapshot.not_finite
                 )
+            })?;
+            for (engine, seen) in [("cpu", measure::snapshot(&here, &cpu)), ("gpu", snapshot)] {
+                let (worst, strain) = (seen.worst, seen.max_strain);
+                ensure(worst.depth_m <= worst.limit_m && strain <= 0.02, || {
+                    format!("{engine}, tick {}: {worst:?}, strain {strain}", here.ticks)
+                })?;
+            }
+        }
+        if here.time_s() >= RESTING_S {
+            ensure(here.tiles.is_empty() && there.tiles.is_empty(), || {
+                format!("tiles are active at {} s", here.time_s())
             })?;
         }
     }

@@ -131,7 +131,9 @@ impl Adapter {
 
     fn write(&self, out: &mut impl Write) -> io::Result<()> {
         let kind = match self.device_type {
-            wgpu::DeviceType::Cpu => "software: right, but 100 to 1000 times slower",
+            wgpu::DeviceType::Cpu => {
+                "software: right, but 100 to 1000 times slower than a graphics card"
+            }
             wgpu::DeviceType::IntegratedGpu => "integrated",
             wgpu::DeviceType::DiscreteGpu => "discrete",
             wgpu::DeviceType::VirtualGpu => "virtual",
