@@ -199,9 +199,14 @@ fn run_scene(
             loaded.name,
             truth.bytes() as f64 * 1e-6
         );
-        let mut floor = measure::floor_row(loaded, &truth);
-        floor.key = key(loaded, FLOOR, gpu);
-        store.add(floor)?;
+        let floor_key = key(loaded, FLOOR, gpu);
+        if store.get(&floor_key).is_none() {
+            let floor = measure::floor_row(loaded, &truth);
+            store.add(Row {
+                key: floor_key,
+                ..floor
+            })?;
+        }
         for (n, method) in planned.methods.iter().enumerate() {
             let key = key(loaded, method.name, gpu);
             if store.get(&key).is_none() {
