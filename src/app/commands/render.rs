@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::outputs::ResultFile;
 use super::scene_file;
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
@@ -64,6 +65,12 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     let choice = arguments.engine.choice()?;
     let mut stage = Stage::new(&gpu, &loaded, choice, PictureTarget::FORMAT, arguments.size)?;
     stage.camera(arguments.camera.as_deref())?;
+    // A place that cannot be written to is told before time is spent on pictures.
+    let first = match arguments.frames {
+        frames if frames > 1 && !animated => numbered(&arguments.out, 0),
+        _ => arguments.out.clone(),
+    };
+    ResultFile::create(&first)?;
     let mut shoot = Shoot {
         arguments,
         gpu: &gpu,

@@ -1,10 +1,11 @@
 //! A scene as the command line names it: a file, or one of the program's own by name.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::scene::assets::{AssetSource, Folders, InOrder};
 use crate::scene::builtin::{ASSETS, load_builtin};
-use crate::scene::{AssetError, LoadedScene, SceneError, load_scene};
+use crate::scene::{AssetError, LoadedScene, Problem, SceneError, load_scene};
 
 /// Reads a scene. A file goes before a built-in scene of the same name.
 ///
@@ -13,7 +14,18 @@ use crate::scene::{AssetError, LoadedScene, SceneError, load_scene};
 pub fn load(scene: &Path, assets: &[PathBuf]) -> Result<LoadedScene, SceneError> {
     let by_name = scene.to_str().filter(|_| !scene.is_file());
     let built_in = by_name.and_then(load_builtin);
-    built_in.unwrap_or_else(|| load_scene(scene, assets))
+    built_in.unwrap_or_else(|| load_scene(scene, assets).map_err(named_nowhere))
+}
+
+/// Says of a missing file that no scene of the program has that name either.
+fn named_nowhere(mut error: SceneError) -> SceneError {
+    if let Problem::Unreadable(reason) = &mut error.problem
+        && reason.kind() == io::ErrorKind::NotFound
+    {
+        let text = format!("{reason}; nor is it one of the program's own: see `sward list`");
+        *reason = io::Error::new(io::ErrorKind::NotFound, text);
+    }
+    error
 }
 
 /// Reads a file that the scene of a path, or a built-in scene, has read before.
