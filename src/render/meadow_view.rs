@@ -1,8 +1,10 @@
 //! What a picture shows of a meadow: where its bodies are between two ticks, which tiles are
 //! awake, and the view a scene's camera has.
 
+use std::collections::BTreeMap;
+
 use crate::base::Vec3;
-use crate::field::{TileId, TileState};
+use crate::field::{Bounds, TileId, TileState};
 use crate::scene::Camera;
 use crate::sim::Meadow;
 
@@ -12,6 +14,9 @@ use super::overlay::{TileMark, TileTone};
 
 /// Lowest eye over the ground, in metres: blades that touch the eye hide everything.
 const LEAST_EYE_M: f64 = 0.25;
+/// Half the side of the square around the eye in which the boxes of resting tiles are shown, in
+/// metres: farther off their edges run into each other.
+const RESTING_SHOWN_M: f64 = 20.0;
 /// Field of view of a scene without cameras, in degrees.
 const DEFAULT_FOV_DEG: f32 = 45.0;
 
@@ -37,25 +42,38 @@ pub fn active_slabs(meadow: &Meadow) -> Vec<(TileId, u32)> {
     tiles.iter().map(|tile| (tile.tile, tile.slab)).collect()
 }
 
-/// Boxes around the active tiles, as high as the grass.
-pub fn tile_marks(meadow: &Meadow) -> Vec<TileMark> {
+/// Boxes around tiles, as high as the grass: around all that are awake, and around resting ones
+/// within [`RESTING_SHOWN_M`] of the eye.
+pub fn tile_marks(meadow: &Meadow, eye_in_world: Vec3<f64>) -> Vec<TileMark> {
     let field = &meadow.field;
-    meadow
-        .tiles
-        .iter()
-        .map(|(tile, active)| {
-            let [low, high] = field.grid.tile_bounds(tile, &field.ground);
-            let heights = field.grid.tile_heights(tile, &field.ground).map(f64::from);
-            TileMark {
-                low_in_world: [low[0], heights[0], low[1]],
-                high_in_world: [high[0], heights[1] + f64::from(field.reach_m), high[1]],
-                tone: match active.state {
-                    TileState::Colliding => TileTone::Colliding,
-                    TileState::Recovering => TileTone::Recovering,
-                },
-            }
-        })
-        .collect()
+    let [x, _, z] = eye_in_world.to_f64();
+    let near = Bounds {
+        low: [x - RESTING_SHOWN_M, f64::MIN, z - RESTING_SHOWN_M],
+        high: [x + RESTING_SHOWN_M, f64::MAX, z + RESTING_SHOWN_M],
+    };
+    let mut tones = BTreeMap::new();
+    (field.octree).query(&field.grid, &field.ground, &near, 0.0, |tile| {
+        tones.insert(tile, TileTone::Resting);
+    });
+    tones.extend(
+        meadow
+            .tiles
+            .iter()
+            .map(|(tile, active)| match active.state {
+                TileState::Colliding => (tile, TileTone::Colliding),
+                TileState::Recovering => (tile, TileTone::Recovering),
+            }),
+    );
+    let marks = tones.into_iter().map(|(tile, tone)| {
+        let [low, high] = field.grid.tile_bounds(tile, &field.ground);
+        let heights = field.grid.tile_heights(tile, &field.ground).map(f64::from);
+        TileMark {
+            low_in_world: [low[0], heights[0], low[1]],
+            high_in_world: [high[0], heights[1] + f64::from(field.reach_m), high[1]],
+            tone,
+        }
+    });
+    marks.collect()
 }
 
 /// The view of one of the scene's cameras; without one, a view that frames the bodies. The eye

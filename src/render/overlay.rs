@@ -13,6 +13,8 @@ use super::view_group::ViewGroups;
 /// What a box says.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum TileTone {
+    /// Nothing is simulated: its plants are their seeds.
+    Resting,
     /// A body may be touching the tile's plants.
     Colliding,
     /// The tile's plants are returning to the wind pose.
@@ -25,9 +27,19 @@ impl TileTone {
     /// Colour for legends, in display sRGB.
     pub fn srgb(self) -> [u8; 3] {
         match self {
+            Self::Resting => [70, 120, 205],
             Self::Colliding => [226, 62, 46],
             Self::Recovering => [76, 200, 92],
             Self::Selected => [245, 205, 70],
+        }
+    }
+
+    /// Width of the edges, in pixels, and opacity of the sides: resting tiles are many, and their
+    /// grass is to be seen.
+    fn edge_and_fill(self) -> (f32, f32) {
+        match self {
+            Self::Resting => (0.8, 0.0),
+            _ => (EDGE_PX, FILL),
         }
     }
 
@@ -38,7 +50,7 @@ impl TileTone {
     }
 }
 
-/// A tile's box, resting ones left out.
+/// A tile's box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TileMark {
     pub low_in_world: [f64; 3],
@@ -111,13 +123,16 @@ impl OverlayLayer {
     ) -> Result<(), GpuError> {
         let boxes: Vec<OverlayBox> = marks
             .iter()
-            .map(|mark| OverlayBox {
-                low_from_eye: view.from_eye(Vec3::of(mark.low_in_world)),
-                edge_px: EDGE_PX,
-                high_from_eye: view.from_eye(Vec3::of(mark.high_in_world)),
-                fill: FILL,
-                rgb: mark.tone.light(),
-                pad: 0.0,
+            .map(|mark| {
+                let (edge_px, fill) = mark.tone.edge_and_fill();
+                OverlayBox {
+                    low_from_eye: view.from_eye(Vec3::of(mark.low_in_world)),
+                    edge_px,
+                    high_from_eye: view.from_eye(Vec3::of(mark.high_in_world)),
+                    fill,
+                    rgb: mark.tone.light(),
+                    pad: 0.0,
+                }
             })
             .collect();
         self.count = boxes.len() as u32;

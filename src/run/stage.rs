@@ -248,7 +248,7 @@ impl Stage {
             Engine::Gpu(engine) => (&slabs, engine.grass.drawn()),
         };
         let marks = if overlay {
-            tile_marks(meadow)
+            tile_marks(meadow, view.eye_in_world)
         } else {
             Vec::new()
         };

@@ -15,8 +15,6 @@ const PANEL_POINTS: f32 = 236.0;
 const HELP_MARGIN: f32 = 60.0;
 /// Sample of a colour in the legend, in points.
 const SWATCH: egui::Vec2 = egui::vec2(11.0, 11.0);
-/// Colour of a resting tile in the legend; such tiles get no box.
-const RESTING: Color32 = Color32::from_rgb(150, 160, 150);
 const WARNING: Color32 = Color32::from_rgb(255, 196, 92);
 const WRONG: Color32 = Color32::from_rgb(255, 120, 104);
 
@@ -217,7 +215,7 @@ fn legend(ui: &egui::Ui, facts: &Facts<'_>) {
     };
     area(ui, "legend", Align2::RIGHT_BOTTOM, [-8.0, -8.0], |ui| {
         for (colour, count, state) in [
-            (RESTING, counts.resting, "resting (no box)"),
+            (colour(TileTone::Resting), counts.resting, "resting"),
             (colour(TileTone::Colliding), counts.colliding, "colliding"),
             (
                 colour(TileTone::Recovering),
