@@ -75,6 +75,14 @@ fn usage_errors_are_2_and_help_is_0() {
 }
 
 #[test]
+fn a_method_that_the_gpu_does_not_know_is_4() {
+    // Without an adapter the code is 4 as well.
+    let arguments = ["run", "still", "--engine", "gpu", "--method", "paper"];
+    assert_eq!(code(&sward(&arguments)), 4);
+    assert_eq!(code(&sward(&["run", "still", "--method", "none"])), 2);
+}
+
+#[test]
 fn a_blade_as_json() {
     let output = sward(&[
         "blade-shape",

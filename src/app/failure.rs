@@ -77,9 +77,10 @@ pub fn exit_of_run(error: &RunError) -> Exit {
 
 fn exit_of_gpu(error: &GpuError) -> Exit {
     match error {
-        GpuError::NoAdapter { .. } | GpuError::NoDevice { .. } | GpuError::TooLarge { .. } => {
-            Exit::NoAdapter
-        }
+        GpuError::NoAdapter { .. }
+        | GpuError::NoDevice { .. }
+        | GpuError::TooLarge { .. }
+        | GpuError::UnknownMethod { .. } => Exit::NoAdapter,
         _ => Exit::Internal,
     }
 }

@@ -23,6 +23,12 @@ pub enum GpuError {
         limit_name: &'static str,
     },
 
+    #[error(
+        "the gpu engine does not know the scene's solver.method ({asked}): leave it out, or take \
+         --engine cpu"
+    )]
+    UnknownMethod { asked: String },
+
     #[error("the graphics device was lost: {reason}; make a new device to go on")]
     Lost { reason: String },
 

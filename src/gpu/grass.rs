@@ -17,6 +17,8 @@ use super::passes::relax::RelaxPass;
 use super::passes::{Recording, WORKGROUP};
 use super::tick_data::{ContactRecord, TickUniform};
 use super::{Buffer, FieldBuffers, Gpu, GpuError, PassTimer};
+use crate::scene::Method;
+use crate::scene::method::Collide;
 use crate::sim::Meadow;
 use crate::sim::slab::slab_bytes;
 
@@ -52,6 +54,25 @@ impl GrassKernels {
             workgroup,
         })
     }
+}
+
+/// True for the formulas that the kernels have: the default ones, with cubes or closed forms for
+/// every body, and any cut of time.
+pub fn knows_method(method: &Method) -> bool {
+    let &Method {
+        collide,
+        sampling,
+        cube_per,
+        push,
+        springs,
+        recovery,
+        sweep_share: _,
+        grass_steps: _,
+    } = method;
+    let known = Method::default();
+    !matches!(collide, Collide::Voxels | Collide::Exact)
+        && (sampling, cube_per, push) == (known.sampling, known.cube_per, known.push)
+        && (springs, recovery) == (known.springs, known.recovery)
 }
 
 /// Passes dispatched since the start.
@@ -92,6 +113,10 @@ impl GpuGrass {
     /// A ground or blade table larger than the device can bind.
     pub fn new(gpu: &Gpu, kernels: &GrassKernels, meadow: &mut Meadow) -> Result<Self, GpuError> {
         let solver = &meadow.scene.solver;
+        if !knows_method(&solver.method) {
+            let asked = format!("{:?}", solver.method);
+            return Err(GpuError::UnknownMethod { asked });
+        }
         let bytes = slab_bytes(meadow.field.grid.plants_per_tile(), solver.segments);
         meadow.tiles.slabs.lower_limit(slab_limit(gpu, bytes));
         let grass = Self {

@@ -25,7 +25,7 @@ pub use buffer::{Buffer, checked_bytes};
 pub use device::{AdapterReport, Gpu};
 pub use error::GpuError;
 pub use field_data::FieldBuffers;
-pub use grass::{Dispatches, GpuGrass, GrassKernels};
+pub use grass::{Dispatches, GpuGrass, GrassKernels, knows_method};
 pub use grass_state::{Counts, GpuState};
 pub use layout::GpuStruct;
 pub use tick::{TickError, tick};

@@ -4,12 +4,12 @@ use super::lane::{Kind, Lane, end_of_frame_s, frames};
 use super::store::Row;
 use super::truth::Truth;
 use crate::base::statistics::median;
+use crate::gpu::knows_method;
 use crate::run::compare::Comparison;
 use crate::run::methods::NamedMethod;
 use crate::run::scenario::{Device, RunError};
 use crate::run::watch::Watch;
-use crate::scene::method::{Collide, Method};
-use crate::scene::{LoadedScene, Solver};
+use crate::scene::LoadedScene;
 
 /// Strain that a method may leave.
 const MOST_STRAIN: f64 = 0.02;
@@ -17,24 +17,6 @@ const MOST_STRAIN: f64 = 0.02;
 const MOST_FLIPS: f64 = 0.01;
 /// Pose error that a method may have, in metres, root mean square.
 pub const MOST_RMS_M: f64 = 0.010;
-
-/// Whether the passes of the device know these settings.
-fn is_known_to_gpu(solver: &Solver) -> bool {
-    let Method {
-        collide,
-        sampling,
-        cube_per,
-        push,
-        springs,
-        recovery,
-        sweep_share: _,
-        grass_steps: _,
-    } = solver.method;
-    let known = Method::default();
-    !matches!(collide, Collide::Voxels | Collide::Exact)
-        && (sampling, cube_per, push) == (known.sampling, known.cube_per, known.push)
-        && (springs, recovery) == (known.springs, known.recovery)
-}
 
 /// Runs a method on a scene: on the cpu engine for the total error and the time, with the same
 /// kernels in `f64` for the error of the method alone, and on a graphics device where there is one
@@ -53,7 +35,7 @@ pub fn measure(
     method.apply(&mut solver);
     let mut cpu = Lane::new(loaded, &solver, Kind::Single)?;
     let mut double = Lane::new(loaded, &solver, Kind::Double)?;
-    let gpu = gpu.filter(|_| is_known_to_gpu(&solver));
+    let gpu = gpu.filter(|_| knows_method(&solver.method));
     let device = |device| Lane::new(loaded, &solver, Kind::Device(device));
     let mut gpu = gpu.map(device).transpose()?;
     let mut watch = Watch::default();
