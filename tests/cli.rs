@@ -3,8 +3,12 @@
 #![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
 #![cfg(feature = "app")]
 
+mod process;
+
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
+
+use process::{code, sward};
 
 const STILL: &str = r#"(
     description: "Nothing moves.",
@@ -17,18 +21,6 @@ const WRONG: &str = r#"(
     duration_s: 0.1,
     expect: [SimulatedPlants(at_least: 1)],
 )"#;
-
-fn sward(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_sward"))
-        .args(arguments)
-        .stdin(Stdio::null())
-        .output()
-        .expect("the program starts")
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().expect("no signal ended it")
-}
 
 /// A scene in this test's own folder.
 fn scene(name: &str, text: &str) -> String {

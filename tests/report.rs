@@ -3,9 +3,13 @@
 #![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
 #![cfg(feature = "app")]
 
+mod process;
+
 use std::fs;
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
+
+use process::{code, sward};
 
 /// A ball that stands in a square metre of grass for three frames.
 const TINY: &str = r#"(
@@ -17,16 +21,7 @@ const TINY: &str = r#"(
 )"#;
 
 fn report(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_sward"))
-        .args(["report", "accuracy", "--no-gpu"])
-        .args(arguments)
-        .stdin(Stdio::null())
-        .output()
-        .expect("the program starts")
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().expect("no signal ended it")
+    sward(&[&["report", "accuracy", "--no-gpu"], arguments].concat())
 }
 
 /// An empty folder of this test, with the tiny scene beside it.

@@ -333,4 +333,4 @@ impl Chain {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

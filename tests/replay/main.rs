@@ -3,6 +3,9 @@
 #![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
 
 mod checkpoint;
+#[cfg(feature = "app")]
+#[path = "../process/mod.rs"]
+mod process;
 mod program;
 mod quarantine;
 mod recordings;

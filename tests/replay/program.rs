@@ -3,9 +3,10 @@
 #![cfg(feature = "app")]
 
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 
 use super::folder;
+use super::process::{code, sward};
 
 const ROLL: &str = r#"(
     duration_s: 0.5,
@@ -18,18 +19,6 @@ const ROLL: &str = r#"(
 /// Two days of it: long enough that a test would not end if it were run.
 const ENDLESS: &str = r#"(duration_s: 172800, bodies: [(name: "ball",
     shape: Ball(radius_m: 0.15), position_m: (0, 0.15, 0))])"#;
-
-fn sward(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_sward"))
-        .args(arguments)
-        .stdin(Stdio::null())
-        .output()
-        .expect("the program starts")
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().expect("no signal ended it")
-}
 
 fn text(path: &Path) -> String {
     path.display().to_string()

@@ -90,8 +90,8 @@ fn printed_figures() {
     assert!((shape.energy - -23.94262958209).abs() < 1e-10);
 }
 
-/// k′, x and y of the tip, N = 8 with the paper's root.
-const REFERENCE_TIPS: [[f64; 3]; 13] = [
+/// k′, x and y of the tip of the reference shapes: N = 8, the paper's root, no lean.
+pub(in crate::field) const REFERENCE_TIPS: [[f64; 3]; 13] = [
     [0.5, 0.02487172884937, -0.9978228888192],
     [1.0, 0.04761448518885, -0.9927338542602],
     [2.0, 0.0885097577964, -0.9780663233046],
