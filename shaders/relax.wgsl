@@ -26,14 +26,33 @@ fn rest_direction(j: u32) -> vec3f {
     return unit_or(wind_nodes[j + 1u] - wind_nodes[j], UP);
 }
 
+fn ground_below(tile: TileRecord, node: vec3f) -> f32 {
+    return ground_in_anchor(tile, node.x, node.z);
+}
+
+// True for a node that a body presses onto the ground: its way out leads below it, and down rather
+// than sideways.
+fn is_pressed(tile: TileRecord, out: vec3f, normal: vec3f) -> bool {
+    return normal.y < -STICKS && out.y < ground_below(tile, out);
+}
+
+fn is_on_ground(tile: TileRecord, node: vec3f) -> bool {
+    return node.y - ground_below(tile, node) <= ON_GROUND_M;
+}
+
 // Turns segment j about its lower node until its upper one is on the ground, if it is below.
 fn lay_on_ground(tile: TileRecord, length: f32, j: u32) {
+    let height = ground_below(tile, nodes[j + 1u]);
+    if nodes[j + 1u].y < height {
+        turn_to(length, j, height);
+    }
+}
+
+// Turns segment j about its lower node until its upper one is at a height, as far as its length
+// allows.
+fn turn_to(length: f32, j: u32, height: f32) {
     let start = nodes[j];
     let to = nodes[j + 1u];
-    let height = ground_in_anchor(tile, to.x, to.z);
-    if to.y >= height {
-        return;
-    }
     let rise = clamp(height - start.y, -length, length);
     let run = sqrt(max(length * length - rise * rise, 0.0));
     let rest = rest_direction(j);
@@ -43,8 +62,8 @@ fn lay_on_ground(tile: TileRecord, length: f32, j: u32) {
 }
 
 // Turns segment j about its lower node until its upper one is out of a part, where its length
-// allows that. Returns whether it did.
-fn turn_out(length: f32, j: u32, n: vec3f, depth: f32) -> bool {
+// allows that, or of the way between the part and the ground. Returns whether it did.
+fn turn_out(tile: TileRecord, length: f32, j: u32, n: vec3f, depth: f32) -> bool {
     let segment = nodes[j + 1u] - nodes[j];
     let along = dot(segment, n);
     let rise = along + depth;
@@ -55,13 +74,42 @@ fn turn_out(length: f32, j: u32, n: vec3f, depth: f32) -> bool {
     let rest = rest_direction(j);
     let sideways = unit_or(rest - n * dot(rest, n), across(n));
     let flat = unit_or(segment - n * along, sideways);
-    nodes[j + 1u] = nodes[j] + n * rise + flat * sqrt(run);
+    let out = nodes[j] + n * rise + flat * sqrt(run);
+    if !is_pressed(tile, out, n) {
+        nodes[j + 1u] = out;
+    } else if is_on_ground(tile, nodes[j + 1u]) {
+        return false;
+    } else {
+        turn_to(length, j, ground_below(tile, nodes[j + 1u]));
+    }
+    return true;
+}
+
+// Pushes a node out of a part, or straight down where the part presses it onto the ground. Returns
+// whether it moved.
+fn push_out(tile: TileRecord, j: u32, n: vec3f, depth: f32) -> bool {
+    let node = nodes[j + 1u];
+    let out = node + n * depth;
+    if !is_pressed(tile, out, n) {
+        nodes[j + 1u] = out;
+    } else if is_on_ground(tile, node) {
+        return false;
+    } else {
+        nodes[j + 1u].y = ground_below(tile, node);
+    }
     return true;
 }
 
 // Asks one part about segment j's upper node, and pushes or (`laying`) turns it out. Returns the
 // node's bit if that was done.
-fn meet_part(contact: u32, pose: Pose, length: f32, j: u32, laying: bool) -> u32 {
+fn meet_part(
+    tile: TileRecord,
+    contact: u32,
+    pose: Pose,
+    length: f32,
+    j: u32,
+    laying: bool,
+) -> u32 {
     let reach = Reach(nodes[j], select(-1.0, length, laying));
     let exit = way_out(contact, pose, nodes[j + 1u], faces[j], reach);
     if exit.face == NO_FACE {
@@ -70,10 +118,9 @@ fn meet_part(contact: u32, pose: Pose, length: f32, j: u32, laying: bool) -> u32
     faces[j] = contacts[contact].key | ((exit.face + 1u) & FACE_MASK);
     let n = rotate(pose.turn, exit.normal);
     if laying {
-        return select(0u, 2u << j, turn_out(length, j, n, exit.depth));
+        return select(0u, 2u << j, turn_out(tile, length, j, n, exit.depth));
     }
-    nodes[j + 1u] += n * exit.depth;
-    return 2u << j;
+    return select(0u, 2u << j, push_out(tile, j, n, exit.depth));
 }
 
 // Pushes every node out of every part that reaches the plant, part after part; or, `laying`, lays
@@ -100,7 +147,7 @@ fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, layi
             near = reaches(contact, nodes[0], plant_reach);
         }
         if near {
-            pushed |= meet_part(contact, pose, length, j, laying);
+            pushed |= meet_part(tile, contact, pose, length, j, laying);
         }
         if laying && part + 1u == parts {
             lay_on_ground(tile, length, j);
@@ -139,8 +186,7 @@ fn follow_pushed(pushed: u32, length: f32) {
 
 fn keep_above_ground(tile: TileRecord) {
     for (var j = 1u; j <= field.segments; j++) {
-        let height = ground_in_anchor(tile, nodes[j].x, nodes[j].z);
-        nodes[j].y = max(nodes[j].y, height);
+        nodes[j].y = max(nodes[j].y, ground_below(tile, nodes[j]));
     }
 }
 

@@ -11,12 +11,13 @@ struct CubeSample {
     // False outside the face's silhouette; then the rest means nothing.
     hit: bool,
     hidden: bool,
-    // Depth of the point behind the surface, along the face's axis.
+    // Depth of the point behind the planes of the texels around it.
     behind: f32,
     normal: vec3f,
 }
 
-// Masked bilinear sample of a face under a point: weights over hit texels only.
+// A face's surface over a point: distances to the tangent planes of the texels that were hit, mixed
+// by bilinear weights.
 fn cube_sample(solid: SolidRecord, p: vec3f, face: u32) -> CubeSample {
     var sample: CubeSample;
     let a = face >> 1u;
@@ -27,11 +28,13 @@ fn cube_sample(solid: SolidRecord, p: vec3f, face: u32) -> CubeSample {
     let at = vec2f(inside[columns_along], inside[rows_along]);
     let whole = floor(at);
     let share = at - whole;
+    let texel_m = size / f32(solid.resolution);
+    let below = select(p[a] - solid.low[a], solid.high[a] - p[a], (face & 1u) == 0u);
     let last = i32(solid.resolution) - 1;
     let first = solid.first_texel + face * solid.resolution * solid.resolution;
     var weight = 0.0;
     var hidden = 0.0;
-    var depth = 0.0;
+    var distance = 0.0;
     var normal = vec3f(0.0);
     for (var corner = 0u; corner < 4u; corner++) {
         let step = vec2u(corner & 1u, corner >> 1u);
@@ -43,19 +46,22 @@ fn cube_sample(solid: SolidRecord, p: vec3f, face: u32) -> CubeSample {
             continue;
         }
         weight += w;
-        depth += w * unpack_depth(word.x);
-        normal += unpack_normal(word.y) * w;
+        let n = unpack_normal(word.y);
+        let off_centre = at - vec2f(texel);
+        let sideways = n[columns_along] * (off_centre.x * texel_m[columns_along])
+            + n[rows_along] * (off_centre.y * texel_m[rows_along]);
+        distance += w * ((below - unpack_depth(word.x) * size[a]) * abs(n[a]) - sideways);
+        normal += n * w;
         if (word.x & HIDDEN) != 0u {
             hidden += w;
         }
     }
-    if weight < 0.5 {
+    if weight < LEAST_WEIGHT {
         return sample;
     }
     sample.hit = true;
     sample.hidden = hidden * 2.0 > weight;
-    let below = select(p[a] - solid.low[a], solid.high[a] - p[a], (face & 1u) == 0u);
-    sample.behind = below - depth / weight * size[a];
+    sample.behind = distance / weight;
     sample.normal = unit_or(normal, face_normal(face));
     return sample;
 }
@@ -89,9 +95,9 @@ fn cube_exit(solid: SolidRecord, p: vec3f, kept: u32, reach: Reach) -> Exit {
         if !sample.hit || sample.behind <= 0.0 {
             return outside();
         }
-        let depth = sample.behind * abs(sample.normal[face >> 1u]);
-        let price = cost(reach, p, depth, sample.normal) + select(0.0, HIDDEN_M, sample.hidden);
-        offer(&choice, kept, price, Exit(depth, sample.normal, face));
+        let price = cost(reach, p, sample.behind, sample.normal)
+            + select(0.0, HIDDEN_M, sample.hidden);
+        offer(&choice, kept, price, Exit(sample.behind, sample.normal, face));
     }
     return take(choice);
 }

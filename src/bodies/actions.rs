@@ -121,11 +121,6 @@ impl Bodies {
         // As rapier rounds it, so that a body that does not move keeps its bits.
         let pose = self.frame.pose_from_rapier(rigid.position());
         let (handle, _) = self.physics.insert(rigid, collider);
-        let piece = |&shape: &u32| Piece {
-            shape,
-            from: pose,
-            to: pose,
-        };
         // As rapier combines two colliders' friction.
         let grip = 0.5 * (body.friction + self.ground_friction);
         let actor = Actor {
@@ -133,7 +128,10 @@ impl Bodies {
             handle,
             control,
             vehicle: build.map(|build| Vehicle::new(handle, &build, grip)),
-            pieces: shapes.iter().map(piece).collect(),
+            pieces: shapes
+                .iter()
+                .map(|&shape| Piece::new(shape, pose))
+                .collect(),
             grass_collider: body.collider,
             rgb: body.rgb,
         };
@@ -190,7 +188,7 @@ impl Bodies {
         if let Some(actor) = self.actors.get_mut(name) {
             let poses = actor.piece_poses(pose);
             for (piece, pose) in actor.pieces.iter_mut().zip(poses) {
-                piece.jump(pose);
+                piece.put(pose);
             }
         }
         Ok(())

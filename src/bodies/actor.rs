@@ -43,19 +43,42 @@ pub(super) struct Piece {
     pub shape: u32,
     pub from: Pose<f64>,
     pub to: Pose<f64>,
+    /// It came to `from` by a jump.
+    pub placed: bool,
+    /// It was put where it is since the last sub-step.
+    arrives: bool,
 }
 
 impl Piece {
+    /// One that appears at a pose before the next sub-step.
+    pub fn new(shape: u32, pose: Pose<f64>) -> Self {
+        Self {
+            shape,
+            from: pose,
+            to: pose,
+            placed: true,
+            arrives: true,
+        }
+    }
+
     /// Moves on by a sub-step.
     pub fn advance(&mut self, to: Pose<f64>) {
         self.from = self.to;
         self.to = to;
+        self.placed = std::mem::take(&mut self.arrives);
     }
 
-    /// Is at once somewhere else; nothing in between is touched.
+    /// Is at once somewhere else at the end of a sub-step; nothing in between is touched.
     pub fn jump(&mut self, to: Pose<f64>) {
         self.from = to;
         self.to = to;
+        self.placed = true;
+        self.arrives = false;
+    }
+
+    /// Is at once somewhere else before the next sub-step.
+    pub fn put(&mut self, to: Pose<f64>) {
+        *self = Self::new(self.shape, to);
     }
 }
 

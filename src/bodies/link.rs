@@ -14,6 +14,8 @@ pub struct Link {
     pub from: Pose<f64>,
     /// `world_from_body` at its end.
     pub to: Pose<f64>,
+    /// It came to `from` by a jump: it was spawned, teleported, or started its path anew.
+    pub placed: bool,
     /// As the scene wishes; the simulation resolves `Auto`.
     pub collider: Collider,
     /// Linear RGB.
@@ -31,6 +33,7 @@ impl Link {
         Self {
             from: at(part),
             to: at(part + 1),
+            placed: self.placed && part == 0,
             ..self.clone()
         }
     }

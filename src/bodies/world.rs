@@ -247,7 +247,7 @@ impl Bodies {
             if vehicle.set_down(&mut self.physics) {
                 let poses = actor.piece_poses(actor.pieces[0].to);
                 for (piece, pose) in actor.pieces.iter_mut().zip(poses) {
-                    piece.jump(pose);
+                    piece.put(pose);
                 }
             }
         }
@@ -370,6 +370,7 @@ impl Bodies {
                 shape: piece.shape,
                 from: piece.from,
                 to: piece.to,
+                placed: piece.placed,
                 collider: actor.grass_collider,
                 rgb: actor.rgb,
             }));

@@ -18,8 +18,9 @@ use crate::field::pose::{MAX_NODES, MAX_SEGMENTS};
 use crate::field::wind::WAVES;
 use crate::sim::collide::PINNED_M;
 use crate::sim::contact::FACE_MASK;
-use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIDDEN_M, HIT};
+use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIDDEN_M, HIT, LEAST_WEIGHT};
 use crate::sim::recover::ASIDE;
+use crate::sim::relax::{ON_GROUND_M, STICKS};
 use crate::sim::solid::{KEEP_FACE, NO_FACE, OUT_OF_REACH_M};
 
 /// A WGSL file, embedded, with the Rust constants it uses.
@@ -114,7 +115,14 @@ macro_rules! wgsl_file {
 /// Files that any layer's shaders may import.
 pub const SHARED: &[WgslFile] = &[
     wgsl_file!("shared/contact.wgsl", FACE_MASK, NO_FACE),
-    wgsl_file!("shared/cube.wgsl", HIDDEN, HIDDEN_M, HIT, NO_FACE),
+    wgsl_file!(
+        "shared/cube.wgsl",
+        HIDDEN,
+        HIDDEN_M,
+        HIT,
+        LEAST_WEIGHT,
+        NO_FACE
+    ),
     wgsl_file!("shared/field.wgsl", MAX_SPECIES),
     wgsl_file!("shared/ground.wgsl"),
     wgsl_file!("shared/philox.wgsl"),
@@ -160,8 +168,10 @@ pub const PASSES: &[WgslFile] = &[
         MAX_SEGMENTS,
         MOST_GROUPS,
         NO_FACE,
+        ON_GROUND_M,
         RELAX_GROUPS,
-        WORKGROUP
+        STICKS,
+        WORKGROUP,
     ),
 ];
 

@@ -77,20 +77,29 @@ pub const METHODS: &[NamedMethod] = &[
             solver.method.push = Push::Literal;
         },
     ),
-    named("cube-16", "masked", "depth cubes of 16 texels", |s| {
+    named("cube-16", "planes", "depth cubes of 16 texels", |s| {
         cube(s, 16)
     }),
-    named("cube-32", "masked", "depth cubes of 32 texels", |s| {
+    named("cube-32", "planes", "depth cubes of 32 texels", |s| {
         cube(s, 32)
     }),
-    named("cube-64", "masked", "depth cubes of 64 texels", |s| {
+    named("cube-64", "planes", "depth cubes of 64 texels", |s| {
         cube(s, 64)
     }),
-    named("cube-128", "masked", "depth cubes of 128 texels", |s| {
+    named("cube-128", "planes", "depth cubes of 128 texels", |s| {
         cube(s, 128)
     }),
-    named("cube-256", "masked", "depth cubes of 256 texels", |s| {
+    named("cube-256", "planes", "depth cubes of 256 texels", |s| {
         cube(s, 256)
+    }),
+    named("masked-16", "masked", "16 texels, masked depths", |s| {
+        masked(s, 16)
+    }),
+    named("masked-64", "masked", "64 texels, masked depths", |s| {
+        masked(s, 64)
+    }),
+    named("masked-256", "masked", "256 texels, masked depths", |s| {
+        masked(s, 256)
     }),
     named("nearest-16", "nearest", "16 texels, nearest", |s| {
         nearest(s, 16)
@@ -213,6 +222,14 @@ pub const METHODS: &[NamedMethod] = &[
     named("sweep-1/2", "sweeps", "half of its half thickness", |s| {
         s.method.sweep_share = 0.5;
     }),
+    named(
+        "sweep-1/8",
+        "sweeps",
+        "an eighth of its half thickness",
+        |s| {
+            s.method.sweep_share = 0.125;
+        },
+    ),
     named("rounds-1", "rounds", "one round of lengths and push", |s| {
         s.rounds = [1, 1]
     }),
@@ -259,6 +276,11 @@ const fn named(
 fn cube(solver: &mut Solver, resolution: u32) {
     solver.method.collide = Collide::Cube;
     solver.cube_resolution = resolution;
+}
+
+fn masked(solver: &mut Solver, resolution: u32) {
+    cube(solver, resolution);
+    solver.method.sampling = Sampling::Masked;
 }
 
 fn nearest(solver: &mut Solver, resolution: u32) {

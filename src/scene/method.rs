@@ -29,12 +29,12 @@ impl Default for Method {
     fn default() -> Self {
         Self {
             collide: Collide::AsBodies,
-            sampling: Sampling::Masked,
+            sampling: Sampling::Planes,
             cube_per: CubePer::Part,
             push: Push::Ratio,
             springs: Springs::Default,
             recovery: Recovery::Lengths,
-            sweep_share: 0.125,
+            sweep_share: 1.0 / 16.0,
             grass_steps: 1,
         }
     }
@@ -61,8 +61,11 @@ pub enum Collide {
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, JsonSchema, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sampling {
-    /// Weights over texels that were hit, outside where they sum to less than a half.
+    /// The surface is each texel's tangent plane; distances to the planes of the texels that were
+    /// hit are mixed by their weights. Outside where none was hit.
     #[default]
+    Planes,
+    /// Depths with weights over texels that were hit, outside where they sum to less than a half.
     Masked,
     /// Weights over all four texels; one that was not hit is as deep as the cube.
     Bilinear,
@@ -81,7 +84,8 @@ pub enum CubePer {
     Body,
 }
 
-/// How far a vertex inside a depth cube is pushed along the stored normal.
+/// How far a vertex inside a depth cube is pushed along the stored normal; `Planes` know the
+/// distance, other samplings only the depth d.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, JsonSchema, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Push {

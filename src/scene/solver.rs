@@ -63,7 +63,7 @@ impl Default for Solver {
             segments: 8,
             cube_resolution: 64,
             skin_m: 0.001,
-            spring_rate_per_s: 15.0,
+            spring_rate_per_s: 3.0,
             rounds: [2, 6],
             strain_limit: 0.02,
             max_sweeps: 1024,

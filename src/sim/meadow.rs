@@ -229,7 +229,10 @@ impl Meadow {
             .links
             .iter()
             .zip(0..)
-            .map(|(link, number)| Mover::new(link, number, &shapes[link.shape as usize], solver))
+            .map(|(link, number)| {
+                let shape = &shapes[link.shape as usize];
+                Mover::new(link, number, shape, solver, f64::from(self.field.reach_m))
+            })
             .collect();
         let mut near: BTreeMap<TileId, Vec<&Mover>> = BTreeMap::new();
         if !self.field.is_bare() {

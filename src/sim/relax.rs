@@ -2,7 +2,7 @@
 //!
 //! Push out, then (springs and lengths along the ground, push out, ground) until no segment is strained by more
 //! than the limit, at least and at most as often as the solver says; the ground wins over the
-//! body. The sub-step is cut into sweeps, so that no body crosses more than an eighth of its
+//! body. The sub-step is cut into sweeps, so that no body crosses more than a sixteenth of its
 //! half thickness at once.
 //!
 //! Springs (O09 eq. 6-7, responsibilities r₁ + r₂ = 1): structural ones are replaced by lengths
@@ -21,6 +21,12 @@ use crate::terrain::HeightGrid;
 use super::contact::Touch;
 use super::fault::{Fault, Planted};
 use super::springs::{self, LiteralBlade, relax_blade};
+
+/// A body whose surface is closer to level than this cosine (45°) holds what it presses onto the
+/// ground; a steeper one pushes it along.
+pub const STICKS: f64 = 0.707;
+/// A node this close to the ground lies on it, in metres: some roundings of its coordinates.
+pub const ON_GROUND_M: f64 = 1e-6;
 
 /// What the kernel needs besides the plant.
 #[derive(Clone, Copy, Debug)]
@@ -95,7 +101,7 @@ pub fn respond<R: Real>(
     for sweep in 1..=sweeps {
         let share = R::of(f64::from(sweep)) / R::of(f64::from(sweeps));
         let bodies = Bodies::at(touches, share, nodes[0], reach);
-        let mut pushed = bodies.push_out(nodes, faces);
+        let mut pushed = bodies.push_out(nodes, faces, place);
         if pushed == 0 {
             continue;
         }
@@ -135,17 +141,25 @@ impl<'a, R: Real> Bodies<'a, R> {
         }
     }
 
-    /// Pushes every node out of every part, parts in their order. Returns a bit per node that was
-    /// inside one.
-    fn push_out(&self, nodes: &mut Nodes<R>, faces: &mut [u32]) -> u32 {
+    /// Pushes every node out of every part, parts in their order, and those that are pressed onto
+    /// the ground straight down to it. Returns a bit per node that was moved.
+    fn push_out(&self, nodes: &mut Nodes<R>, faces: &mut [u32], place: &Place<R>) -> u32 {
         let mut pushed = 0;
         for (touch, pose) in &self.posed {
             for (j, face) in faces.iter_mut().enumerate() {
                 let node = nodes[j + 1];
-                if let Some(exit) = touch.exit(pose, node, face, None) {
-                    nodes[j + 1] = node + exit.normal * exit.depth;
-                    pushed |= 1 << (j + 1);
+                let Some(exit) = touch.exit(pose, node, face, None) else {
+                    continue;
+                };
+                let out = node + exit.normal * exit.depth;
+                if !place.is_pressed(out, exit.normal) {
+                    nodes[j + 1] = out;
+                } else if place.is_on_ground(node) {
+                    continue;
+                } else {
+                    nodes[j + 1] = place.below(node);
                 }
+                pushed |= 1 << (j + 1);
             }
         }
         pushed
@@ -172,12 +186,20 @@ impl<'a, R: Real> Bodies<'a, R> {
             let along = (to - from).dot(n);
             let rise = along + exit.depth;
             let run = place.length * place.length - rise * rise;
-            if run > R::ZERO {
-                let sideways = (rest - n * rest.dot(n)).unit_or(across(n));
-                let flat = ((to - from) - n * along).unit_or(sideways);
-                to = from + n * rise + flat * run.sqrt();
-                turned = true;
+            if run <= R::ZERO {
+                continue;
             }
+            let sideways = (rest - n * rest.dot(n)).unit_or(across(n));
+            let flat = ((to - from) - n * along).unit_or(sideways);
+            let out = from + n * rise + flat * run.sqrt();
+            if !place.is_pressed(out, n) {
+                to = out;
+            } else if place.is_on_ground(to) {
+                continue;
+            } else {
+                to = place.turn_to(from, to, place.below(to).y, rest);
+            }
+            turned = true;
         }
         (to, turned)
     }
@@ -247,12 +269,36 @@ fn lay_out<R: Real>(
 }
 
 impl<R: Real> Place<'_, R> {
+    /// The ground under a node.
+    fn below(&self, node: Vec3<R>) -> Vec3<R> {
+        let height = ground_in_anchor(self.ground, self.anchor, node.x, node.z);
+        vec3(node.x, height, node.z)
+    }
+
+    /// True for a node that a body presses onto the ground: its way out leads below it, and down
+    /// rather than sideways. Such a node goes straight down and stays. Sliding along the body's
+    /// normal as well would creep on in every round and sweep, until the node lies beside the
+    /// place where body and ground overlap: the pose would tell their number.
+    fn is_pressed(&self, out: Vec3<R>, normal: Vec3<R>) -> bool {
+        normal.y < R::of(-STICKS) && out.y < self.below(out).y
+    }
+
+    fn is_on_ground(&self, node: Vec3<R>) -> bool {
+        node.y - self.below(node).y <= R::of(ON_GROUND_M)
+    }
+
     /// Turns a segment about its lower node until its upper one is on the ground, if it is below.
     fn lay_on_ground(&self, from: Vec3<R>, to: Vec3<R>, rest: Vec3<R>) -> Vec3<R> {
-        let height = ground_in_anchor(self.ground, self.anchor, to.x, to.z);
+        let height = self.below(to).y;
         if to.y >= height {
             return to;
         }
+        self.turn_to(from, to, height, rest)
+    }
+
+    /// Turns a segment about its lower node until its upper one is at a height, as far as its
+    /// length allows.
+    fn turn_to(&self, from: Vec3<R>, to: Vec3<R>, height: R, rest: Vec3<R>) -> Vec3<R> {
         let rise = (height - from.y).clamp(-self.length, self.length);
         let run = (self.length * self.length - rise * rise)
             .max(R::ZERO)
@@ -265,8 +311,7 @@ impl<R: Real> Place<'_, R> {
 
 fn keep_above_ground<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>) {
     for node in &mut nodes[1..=place.segments] {
-        let height = ground_in_anchor(place.ground, place.anchor, node.x, node.z);
-        node.y = node.y.max(height);
+        node.y = node.y.max(place.below(*node).y);
     }
 }
 

@@ -48,7 +48,7 @@ pub struct Contact {
     /// Index into [`Bodies::shapes`](crate::bodies::Bodies::shapes).
     pub shape: u32,
     /// Pieces the sub-step is cut into for this body: it travels at most a share of its half
-    /// thickness in each, an eighth of it unless the method says otherwise.
+    /// thickness in each, a sixteenth of it unless the method says otherwise.
     pub sweeps: u32,
     /// `anchor_from_part` at the start and the end of the sub-step.
     pub from: Pose<f64>,
@@ -86,8 +86,37 @@ fn travel_m(link: &Link, radius_m: f64) -> f64 {
     (link.to.place - link.from.place).length() + turned
 }
 
+/// A link's motion as the grass meets it. One that was put somewhere is let down on the grass from
+/// above: which way a blade leaves a body that is suddenly around it would hang on millimetres.
+/// It starts as high over its place as plants are tall, or as its sweeps can cover. Not let down are
+/// a body that goes farther than that in its first sub-step, which has come from aside, and one of
+/// several parts, which would sweep what its hollows leave alone.
+fn let_down(link: &Link, shape: &RigidShape, solver: &Solver, tallest_m: f64) -> Link {
+    let mut link = link.clone();
+    let reachable_m = 0.5 * f64::from(solver.max_sweeps) * sweep_m(shape, solver);
+    let lift_m = tallest_m.min(reachable_m);
+    let convex = shape.parts.len() == 1;
+    if link.placed && convex && travel_m(&link, shape.bounding_radius_m) <= lift_m {
+        link.from.place.y += lift_m;
+    }
+    link
+}
+
+/// Longest way of a body in one sweep, in metres.
+fn sweep_m(shape: &RigidShape, solver: &Solver) -> f64 {
+    solver.method.sweep_share * shape.half_thickness_m
+}
+
 impl Mover {
-    pub fn new(link: &Link, number: u32, shape: &RigidShape, solver: &Solver) -> Self {
+    /// `tallest_m` is the length of the longest blade, in metres.
+    pub fn new(
+        link: &Link,
+        number: u32,
+        shape: &RigidShape,
+        solver: &Solver,
+        tallest_m: f64,
+    ) -> Self {
+        let link = let_down(link, shape, solver, tallest_m);
         let skin = f64::from(solver.skin_m);
         let bounds_at = |pose: Pose<f64>| {
             let boxes = shape
@@ -100,14 +129,13 @@ impl Mover {
             })
         };
         let swept = bounds_at(link.from).union(bounds_at(link.to));
-        let step = solver.method.sweep_share * shape.half_thickness_m;
-        let wished = (travel_m(link, shape.bounding_radius_m) / step)
+        let wished = (travel_m(&link, shape.bounding_radius_m) / sweep_m(shape, solver))
             .ceil()
             .max(1.0);
         Self {
-            link: link.clone(),
             number,
-            bounds: swept.grown(skin + bulge_m(link, shape.bounding_radius_m)),
+            bounds: swept.grown(skin + bulge_m(&link, shape.bounding_radius_m)),
+            link,
             sweeps: wished.min(f64::from(solver.max_sweeps)) as u32,
             capped: wished > f64::from(solver.max_sweeps),
         }
