@@ -203,6 +203,8 @@ fn at_share(nodes: &[Vec3<f64>], part: usize, parts: usize) -> Option<Vec3<f64>>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::Plant;
+    use crate::scene::parse_scene;
 
     #[test]
     fn lines_of_other_segments_meet_at_equal_arc_length() {
@@ -220,5 +222,66 @@ mod tests {
             }
         }
         assert!(at_share(&[], 0, 8).is_none());
+    }
+
+    /// A blade of 0.4 m whose tip is pushed to `x_m`, last touched at a tick.
+    fn blade(touched_at: u32, x_m: f64) -> Plants {
+        let plant = Plant {
+            root_in_anchor: [0.0; 3],
+            azimuth: [1.0, 0.0],
+            height_m: 0.4,
+            width_m: 0.007,
+            stiffness: 0.5,
+            lean: 0.0,
+            flexibility: 1.0,
+            species: 0,
+            flutter_turns: 0.0,
+            shade: 0,
+        };
+        let nodes = |x_m| vec![Vec3::ZERO, Vec3::new(x_m, 0.4, 0.0)];
+        let standing = Standing {
+            place: 0,
+            plant,
+            origin: [0.0; 3],
+            wind: nodes(0.0),
+            nodes: nodes(x_m),
+            offsets: Vec::new(),
+            touched_at,
+        };
+        Plants::from([((0, 0), standing)])
+    }
+
+    fn compared(frames: &[(Plants, Plants)]) -> Difference {
+        let mut comparison = Comparison::default();
+        for (ours, theirs) in frames {
+            comparison.frame(ours, theirs);
+        }
+        let text = "(terrain: (ground: Flat(size_m: (2, 2))))";
+        let loaded = parse_scene("sides", text, &[]).expect("a valid scene");
+        let meadow = Meadow::new(loaded.scene, &loaded.assets).expect("a meadow");
+        comparison.finish(&meadow.field)
+    }
+
+    #[test]
+    fn a_plant_that_comes_back_to_its_side_counts_with_all_its_frames() {
+        let found = compared(&[
+            (blade(1, -0.2), blade(1, 0.2)),
+            (blade(2, 0.2), blade(2, 0.2)),
+        ]);
+        assert_eq!((found.side_flips, found.touched_plants), (0, 1));
+        // 0.4 m in one of two frames.
+        assert!((found.pose_rms_m - 0.4 / 2.0_f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_plant_let_go_on_another_side_stays_there_although_it_rises() {
+        let found = compared(&[
+            (blade(1, 0.2), blade(1, 0.2)),
+            (blade(2, -0.2), blade(2, 0.2)),
+            (blade(2, -0.01), blade(2, 0.01)),
+            (Plants::new(), blade(2, 0.0)),
+        ]);
+        assert_eq!((found.side_flips, found.touched_plants), (1, 1));
+        assert_eq!(found.pose_rms_m, 0.0, "none of its frames counts");
     }
 }
