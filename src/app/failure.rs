@@ -100,7 +100,9 @@ impl From<AccuracyError> for Failure {
         match error {
             AccuracyError::Run(error) => Self::Run(error),
             // Not stdout: the error says itself what could not be written.
-            error @ AccuracyError::Store(_) => Self::Internal(error.to_string()),
+            error @ (AccuracyError::Store(_) | AccuracyError::Blades(_)) => {
+                Self::Internal(error.to_string())
+            }
         }
     }
 }

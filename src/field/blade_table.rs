@@ -33,6 +33,10 @@
 
 use thiserror::Error;
 
+mod errors;
+
+pub use errors::TableErrors;
+
 use super::blade_shape::{
     self, STIFFNESS_RANGE, ShapeError, critical_stiffness, stiffness_for_segments,
 };
@@ -294,44 +298,6 @@ impl BladeTable {
             mix(upright, leaned, place.lean)
         };
         [mixed(0), mixed(1)]
-    }
-
-    /// The largest distance of a node between table and solver, in blade lengths, over nine
-    /// points inside every cell of the table.
-    ///
-    /// # Errors
-    ///
-    /// The solver's.
-    pub fn max_error(&self) -> Result<f64, ShapeError> {
-        let inside = |entry: u32, quarter: u32, axis: &Axis| {
-            axis.fraction_at(f64::from(entry) + f64::from(quarter) * 0.25)
-        };
-        let mut largest: f64 = 0.0;
-        for lean in 0..self.lean_rad.entries - 1 {
-            for stiffness in 0..self.log2_k.entries - 1 {
-                for quarters in 0..9 {
-                    largest = largest.max(self.error_at(
-                        inside(stiffness, 1 + quarters % 3, &self.log2_k),
-                        inside(lean, 1 + quarters / 3, &self.lean_rad),
-                    )?);
-                }
-            }
-        }
-        Ok(largest)
-    }
-
-    fn error_at(&self, stiffness: f64, lean: f64) -> Result<f64, ShapeError> {
-        let shape = self.solve_at(stiffness, lean)?;
-        let place = self.place(stiffness, lean);
-        let mut at = [0.0, 0.0];
-        let mut largest: f64 = 0.0;
-        for (segment, node) in shape.nodes.iter().skip(1).enumerate() {
-            let [x, y] = self.direction(place, segment);
-            let length = libm::hypot(x, y) * f64::from(self.segments);
-            at = [at[0] + x / length, at[1] + y / length];
-            largest = largest.max(libm::hypot(at[0] - node[0], at[1] - node[1]));
-        }
-        Ok(largest)
     }
 }
 

@@ -1,7 +1,10 @@
 //! How far two runs of one scene differ: poses, imprints, plants on another side of a body.
+//!
+//! Which side of a body a plant ended on is decided where it was last touched: afterwards it rises in
+//! both runs, and even one that was laid the other way comes near in the end.
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::base::Vec3;
 use crate::base::statistics::quantile;
@@ -44,21 +47,35 @@ pub fn touched_plants(meadow: &Meadow, engine: &mut Engine) -> Result<Plants, Gp
 /// What differed so far between a run and the one that is taken for true.
 #[derive(Clone, Debug, Default)]
 pub struct Comparison {
-    /// Plants that ever were on another side.
-    flipped: BTreeSet<PlantId>,
-    touched: BTreeSet<PlantId>,
-    /// Mean squared distance of the nodes of a plant at a frame, for plants on the same side, and
-    /// the plant's length.
-    squares_m2: Vec<(f64, f64)>,
+    touched: BTreeMap<PlantId, Touched>,
+    /// Per plant and frame.
+    distances: Vec<Distance>,
     /// Plants that lean in both, and in either, summed over frames.
     lean_both: u64,
     lean_either: u64,
 }
 
+/// A plant that a body has touched in one of the runs.
+#[derive(Clone, Copy, Debug, Default)]
+struct Touched {
+    /// Tick of its last contact in either.
+    at: [u32; 2],
+    on_other_side: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Distance {
+    plant: PlantId,
+    /// Mean over the nodes.
+    square_m2: f64,
+    /// The plant's.
+    length_m: f64,
+}
+
 /// What a comparison came to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Difference {
-    /// Over touched plants on the same side of the bodies, all frames.
+    /// Over touched plants that ended on the same side of the bodies, all frames.
     pub pose_rms_m: f64,
     pub pose_p95_m: f64,
     /// The same over each plant's length.
@@ -66,7 +83,7 @@ pub struct Difference {
     pub pose_p95_lengths: f64,
     /// Overlap of the plants that lean more than 30°; `None` where none ever leaned.
     pub imprint_iou: Option<f64>,
-    /// Plants that ever were on another side of a body than in the reference.
+    /// Plants that ended on another side of a body than in the reference.
     pub side_flips: u64,
     pub touched_plants: u64,
     /// World x and z of their roots.
@@ -91,38 +108,47 @@ impl Comparison {
     }
 
     fn plant(&mut self, id: PlantId, plant: &Standing<f64>, truth: &Standing<f64>) {
-        self.touched.insert(id);
         let leans = [plant, truth].map(|p| p.lean_rad() > LEANS_DEG.to_radians());
         self.lean_both += u64::from(leans == [true, true]);
         self.lean_either += u64::from(leans != [false, false]);
         let distances = distances_m(plant, truth);
         let tip_m = distances.last().copied().unwrap_or(0.0);
         let length_m = f64::from(truth.plant.height_m);
-        if tip_m > OTHER_SIDE * length_m {
-            self.flipped.insert(id);
-        } else {
-            let sum: f64 = distances.iter().map(|d| d * d).sum();
-            let mean = sum / distances.len().max(1) as f64;
-            self.squares_m2.push((mean, length_m));
+        let seen = self.touched.entry(id).or_default();
+        let at = [plant.touched_at, truth.touched_at];
+        // One that is back at rest in a run has given its tick of contact back there.
+        if at[0] > seen.at[0] || at[1] > seen.at[1] {
+            *seen = Touched {
+                at,
+                on_other_side: tip_m > OTHER_SIDE * length_m,
+            };
         }
+        let sum: f64 = distances.iter().map(|d| d * d).sum();
+        self.distances.push(Distance {
+            plant: id,
+            square_m2: sum / distances.len().max(1) as f64,
+            length_m,
+        });
     }
 
     /// What differed over all frames, in a field of plants.
     pub fn finish(&self, field: &Field) -> Difference {
-        let in_lengths = |&(square, length_m): &(f64, f64)| square / length_m.powi(2);
-        let lengths: Vec<f64> = self.squares_m2.iter().map(in_lengths).collect();
-        let metres: Vec<f64> = self.squares_m2.iter().map(|s| s.0).collect();
+        let ended_alike = |plant| !self.touched.get(plant).is_some_and(|t| t.on_other_side);
+        let alike = self.distances.iter().filter(|d| ended_alike(&d.plant));
+        let metres: Vec<f64> = alike.clone().map(|d| d.square_m2).collect();
+        let lengths: Vec<f64> = alike.map(|d| d.square_m2 / d.length_m.powi(2)).collect();
         let overlap = || self.lean_both as f64 / self.lean_either as f64;
-        let roots = self.flipped.iter().filter_map(|&id| root_m(field, id));
+        let flipped = self.touched.iter().filter(|(_, t)| t.on_other_side);
+        let roots: Vec<_> = flipped.map(|(&id, _)| root_m(field, id)).collect();
         Difference {
             pose_rms_m: root_of_mean(&metres),
             pose_p95_m: root_of_p95(&metres),
             pose_rms_lengths: root_of_mean(&lengths),
             pose_p95_lengths: root_of_p95(&lengths),
             imprint_iou: (self.lean_either > 0).then(overlap),
-            side_flips: self.flipped.len() as u64,
+            side_flips: roots.len() as u64,
             touched_plants: self.touched.len() as u64,
-            flipped_roots_m: roots.collect(),
+            flipped_roots_m: roots.into_iter().flatten().collect(),
         }
     }
 }
@@ -140,6 +166,7 @@ fn root_of_p95(squares: &[f64]) -> f64 {
 fn resting(plant: &Standing<f64>) -> Standing<f64> {
     Standing {
         nodes: plant.wind.clone(),
+        touched_at: 0,
         ..plant.clone()
     }
 }
@@ -176,6 +203,8 @@ fn at_share(nodes: &[Vec3<f64>], part: usize, parts: usize) -> Option<Vec3<f64>>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::Plant;
+    use crate::scene::parse_scene;
 
     #[test]
     fn lines_of_other_segments_meet_at_equal_arc_length() {
@@ -193,5 +222,66 @@ mod tests {
             }
         }
         assert!(at_share(&[], 0, 8).is_none());
+    }
+
+    /// A blade of 0.4 m whose tip is pushed to `x_m`, last touched at a tick.
+    fn blade(touched_at: u32, x_m: f64) -> Plants {
+        let plant = Plant {
+            root_in_anchor: [0.0; 3],
+            azimuth: [1.0, 0.0],
+            height_m: 0.4,
+            width_m: 0.007,
+            stiffness: 0.5,
+            lean: 0.0,
+            flexibility: 1.0,
+            species: 0,
+            flutter_turns: 0.0,
+            shade: 0,
+        };
+        let nodes = |x_m| vec![Vec3::ZERO, Vec3::new(x_m, 0.4, 0.0)];
+        let standing = Standing {
+            place: 0,
+            plant,
+            origin: [0.0; 3],
+            wind: nodes(0.0),
+            nodes: nodes(x_m),
+            offsets: Vec::new(),
+            touched_at,
+        };
+        Plants::from([((0, 0), standing)])
+    }
+
+    fn compared(frames: &[(Plants, Plants)]) -> Difference {
+        let mut comparison = Comparison::default();
+        for (ours, theirs) in frames {
+            comparison.frame(ours, theirs);
+        }
+        let text = "(terrain: (ground: Flat(size_m: (2, 2))))";
+        let loaded = parse_scene("sides", text, &[]).expect("a valid scene");
+        let meadow = Meadow::new(loaded.scene, &loaded.assets).expect("a meadow");
+        comparison.finish(&meadow.field)
+    }
+
+    #[test]
+    fn a_plant_that_comes_back_to_its_side_counts_with_all_its_frames() {
+        let found = compared(&[
+            (blade(1, -0.2), blade(1, 0.2)),
+            (blade(2, 0.2), blade(2, 0.2)),
+        ]);
+        assert_eq!((found.side_flips, found.touched_plants), (0, 1));
+        // 0.4 m in one of two frames.
+        assert!((found.pose_rms_m - 0.4 / 2.0_f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_plant_let_go_on_another_side_stays_there_although_it_rises() {
+        let found = compared(&[
+            (blade(1, 0.2), blade(1, 0.2)),
+            (blade(2, -0.2), blade(2, 0.2)),
+            (blade(2, -0.01), blade(2, 0.01)),
+            (Plants::new(), blade(2, 0.0)),
+        ]);
+        assert_eq!((found.side_flips, found.touched_plants), (1, 1));
+        assert_eq!(found.pose_rms_m, 0.0, "none of its frames counts");
     }
 }

@@ -1,7 +1,7 @@
 //! Methods by name: settings of the solver that can be compared in one run.
 
-use crate::scene::Solver;
 use crate::scene::method::{Collide, CubePer, Method, Push, Recovery, Sampling, Springs};
+use crate::scene::{Root, Solver};
 
 /// A setting of the solver with a name.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +14,14 @@ pub struct NamedMethod {
 }
 
 impl NamedMethod {
+    /// Whether the blades stay what they are. Other ones have another reference, so that a pose error
+    /// says nothing of them.
+    pub fn keeps_blades(&self, solver: &Solver) -> bool {
+        let mut changed = solver.clone();
+        self.apply(&mut changed);
+        changed.root == solver.root
+    }
+
     /// Gives a scene's solver the method's settings, and leaves the others.
     pub fn apply(&self, solver: &mut Solver) {
         (self.apply)(solver);
@@ -22,6 +30,9 @@ impl NamedMethod {
 
 /// The method that scenes have unless they say otherwise.
 pub const DEFAULT: &str = "default";
+
+/// The root of P15.
+pub const ROOT_PAPER: &str = "root-paper";
 
 /// Every method, the default first.
 pub const METHODS: &[NamedMethod] = &[
@@ -249,6 +260,27 @@ pub const METHODS: &[NamedMethod] = &[
     named("segments-16", "segments", "blades of 16 segments", |s| {
         s.segments = 16
     }),
+    named(
+        "table-16",
+        "blade table",
+        "resting blades from 16 × 8 entries over stiffness and lean",
+        |s| s.blade_table = [16, 8],
+    ),
+    named("table-32", "blade table", "32 × 16 entries", |s| {
+        s.blade_table = [32, 16]
+    }),
+    named("table-64", "blade table", "64 × 32 entries", |s| {
+        s.blade_table = [64, 32]
+    }),
+    named("table-256", "blade table", "256 × 128 entries", |s| {
+        s.blade_table = [256, 128]
+    }),
+    named(
+        ROOT_PAPER,
+        "root",
+        "the root's hinge as stiff as the others, k′ (P15), instead of 2k′: another blade",
+        |s| s.root = Root::Paper,
+    ),
 ];
 
 /// A share no body can travel in one sub-step.

@@ -1,37 +1,37 @@
-//! How fast a plant rises again: one that was let go is followed until it is back.
+//! How fast a plant rises again: one that was let go is followed until it is back, and its pose
+//! alone tells how much of its offset is left.
 
 use crate::gpu::GpuError;
 use crate::sim::Meadow;
 use crate::sim::measure::Standing;
-use crate::sim::recover::offset_left;
+use crate::sim::weight::offset_weight;
 
+use super::compare::{PlantId, touched_plants};
 use super::engine::Engine;
 
 /// Shares of the offset whose times are told.
 const SHARES: [f64; 3] = [0.5, 0.1, 0.01];
 /// A tip is worth following from this offset on, in metres.
 const WORTH_M: f64 = 0.05;
-/// A plant counts as just let go for this share of the recovery time (a half of the offset is left
-/// after 0.21 of it): one that a body holds is not
-/// touched in every sub-step.
-const LATELY: f64 = 0.15;
-/// Two roots closer than this are one plant, in metres.
-const SAME_ROOT_M: f64 = 1e-6;
 
 /// Follows the first plant that is let go with a fair offset and not touched again.
+///
+/// What it was held at is read from the state in the frame of the contact: the wind pose and the
+/// offset stored by then. From there on only its pose counts.
 #[derive(Clone, Debug, Default)]
 pub struct Release {
     followed: Option<Followed>,
+    /// The plants that were touched in the last frame, as they were held.
+    held: Vec<(PlantId, Standing<f64>)>,
     /// Ticks at the last frame.
     last_tick: u32,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Followed {
-    root_m: [f64; 2],
-    released_at: u32,
-    /// Offset of the tip at release.
-    tip_m: f64,
+    id: PlantId,
+    /// As it stood at its last contact.
+    held: Standing<f64>,
     weight: Passed,
     tip: Passed,
 }
@@ -49,75 +49,95 @@ impl Release {
         match &mut self.followed {
             Some(followed) if followed.is_back() => {}
             Some(followed) => {
-                if followed.touched_again(meadow, engine)? {
+                if followed.is_touched_again(meadow, engine)? {
                     self.followed = None;
                 }
             }
-            None => self.followed = self.just_released(meadow, engine)?,
+            None => self.look_for_one(meadow, engine)?,
         }
         self.last_tick = meadow.ticks;
         Ok(())
     }
 
-    /// When the weight t³ of the stored offset had fallen: the law of the recovery itself.
+    /// When the weight of the offset had fallen, measured from the pose of the plant.
     pub fn weight_s(&self) -> Passed {
-        self.followed.map_or([None; 3], |f| f.weight)
+        self.followed.as_ref().map_or([None; 3], |f| f.weight)
     }
 
     /// When the tip's distance from its wind pose had fallen, which goes faster where a bent blade
     /// keeps its length.
     pub fn tip_s(&self) -> Passed {
-        self.followed.map_or([None; 3], |f| f.tip)
+        self.followed.as_ref().map_or([None; 3], |f| f.tip)
     }
 
-    /// A plant let go lately; one touched in this very sub-step is still held.
-    fn just_released(
-        &self,
-        meadow: &Meadow,
-        engine: &mut Engine,
-    ) -> Result<Option<Followed>, GpuError> {
-        let lately = (f64::from(meadow.recovery_ticks()) * LATELY) as u32;
-        let first = meadow.ticks.saturating_sub(lately).min(self.last_tick);
-        let just_now = first.max(1)..meadow.ticks;
-        let field = &meadow.field;
-        let half = 0.5 * f64::from(field.grid.tile_m());
-        for tile in &meadow.work.tiles {
-            let [low, high] = field.grid.tile_bounds(tile.tile, &field.ground);
-            let middle_m = [0, 1].map(|a| 0.5 * (low[a] + high[a]));
-            let mut plants = engine.near(meadow, middle_m, half)?.into_iter();
-            let let_go = plants.find(|p| just_now.contains(&p.touched_at) && tip_m(p) > WORTH_M);
-            if let Some(plant) = let_go {
-                return Ok(Some(Followed {
-                    root_m: plant.root_in_world(),
-                    released_at: plant.touched_at,
-                    tip_m: tip_m(&plant) / left(meadow, plant.touched_at).max(1e-3),
-                    weight: [None; 3],
-                    tip: [None; 3],
-                }));
+    /// Follows a plant that was touched in the last frame and not since.
+    fn look_for_one(&mut self, meadow: &Meadow, engine: &mut Engine) -> Result<(), GpuError> {
+        let plants = touched_plants(meadow, engine)?;
+        for (id, held) in self.held.drain(..) {
+            let now = plants.get(&id);
+            if let Some(now) = now.filter(|now| now.touched_at == held.touched_at) {
+                let mut followed = Followed::new(id, held);
+                followed.take_in(meadow, now);
+                self.followed = Some(followed);
+                return Ok(());
             }
         }
-        Ok(None)
+        let touched = plants
+            .into_iter()
+            .filter(|(_, p)| p.touched_at > self.last_tick);
+        let held = touched.map(|(id, plant)| (id, as_held(plant)));
+        self.held = held.filter(|(_, plant)| tip_m(plant) > WORTH_M).collect();
+        Ok(())
     }
 }
 
 impl Followed {
+    fn new(id: PlantId, held: Standing<f64>) -> Self {
+        Self {
+            id,
+            held,
+            weight: [None; 3],
+            tip: [None; 3],
+        }
+    }
+
     fn is_back(&self) -> bool {
         self.weight[2].is_some() && self.tip[2].is_some()
     }
 
-    /// Notes what is left now; true if something touched the plant.
-    fn touched_again(&mut self, meadow: &Meadow, engine: &mut Engine) -> Result<bool, GpuError> {
-        let plants = engine.near(meadow, self.root_m, SAME_ROOT_M)?;
-        // A tile at rest has no plants to show: they stand in the wind pose.
-        let (touched_at, tip) = plants
-            .first()
-            .map_or((self.released_at, 0.0), |p| (p.touched_at, tip_m(p)));
-        let age = meadow.ticks - self.released_at;
-        let since_s = f64::from(age) * meadow.scene.solver.substep_s;
-        note(&mut self.weight, left(meadow, self.released_at), since_s);
-        note(&mut self.tip, tip / self.tip_m, since_s);
-        Ok(touched_at > self.released_at)
+    /// Notes what is left now, unless something has touched the plant.
+    fn is_touched_again(&mut self, meadow: &Meadow, engine: &mut Engine) -> Result<bool, GpuError> {
+        let (tile, place) = self.id;
+        let plants = engine.of_tile(meadow, tile)?;
+        let Some(now) = plants.iter().find(|plant| plant.place == place) else {
+            return Ok(true);
+        };
+        // A tile that came to rest has given its ticks of contact back.
+        let touched = now.touched_at > self.held.touched_at;
+        if !touched {
+            self.take_in(meadow, now);
+        }
+        Ok(touched)
     }
+
+    /// Notes what is left now.
+    fn take_in(&mut self, meadow: &Meadow, now: &Standing<f64>) {
+        let age = meadow.ticks - self.held.touched_at;
+        let since_s = f64::from(age) * meadow.scene.solver.substep_s;
+        let recovery = meadow.scene.solver.method.recovery;
+        if let Some(left) = offset_weight((&self.held).into(), now.into(), recovery) {
+            note(&mut self.weight, left, since_s);
+        }
+        note(&mut self.tip, tip_m(now) / tip_m(&self.held), since_s);
+    }
+}
+
+/// The plant with the nodes that its last contact left, beside the wind pose of now.
+fn as_held(mut plant: Standing<f64>) -> Standing<f64> {
+    let pairs = plant.wind.iter().skip(1).zip(&plant.offsets);
+    let held = pairs.map(|(&wind, &offset)| wind + offset);
+    plant.nodes.splice(1.., held.collect::<Vec<_>>());
+    plant
 }
 
 fn note(passed: &mut Passed, left: f64, since_s: f64) {
@@ -128,12 +148,65 @@ fn note(passed: &mut Passed, left: f64, since_s: f64) {
     }
 }
 
-/// The weight of an offset stored at `touched_at`.
-fn left(meadow: &Meadow, touched_at: u32) -> f64 {
-    offset_left(meadow.ticks - touched_at, meadow.step_over_t())
-}
-
 fn tip_m(plant: &Standing<f64>) -> f64 {
     let tips = plant.nodes.last().zip(plant.wind.last());
     tips.map_or(0.0, |(now, wind)| (*now - *wind).length())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::methods::method;
+    use crate::run::{Device, RunOptions, run_scene};
+    use crate::scene::parse_scene;
+
+    /// A ball holds plants down and is gone after a quarter of a second.
+    const HELD: &str = r#"(
+        duration_s: 2.2,
+        terrain: (ground: Flat(size_m: (1, 1))),
+        wind: (strength: 0.2, gust: 0.2),
+        bodies: [(name: "ball", shape: Ball(radius_m: 0.2), position_m: (0.05, 0.15, -0.05),
+                  motion: Fixed)],
+        script: [(at_s: 0.25, action: Remove(body: "ball"))],
+    )"#;
+
+    fn measured(hz: f64, name: &str) -> Passed {
+        let loaded = parse_scene("held", HELD, &[]).expect("a valid scene");
+        let options = RunOptions {
+            hz,
+            method: method(name),
+            ..RunOptions::default()
+        };
+        let outcome = run_scene(&loaded, &options, &Device::Processor, |_| {});
+        outcome.expect("a run").watch.release.weight_s()
+    }
+
+    #[test]
+    fn the_pose_of_a_released_plant_passes_its_marks_within_a_frame() {
+        // T(1 − ∛share) for T = 2 s.
+        let marks = [0.5_f64, 0.1, 0.01].map(|share| 2.0 * (1.0 - share.cbrt()));
+        for name in ["default", "recovery-positions", "recovery-angles"] {
+            for hz in [15.0, 60.0, 120.0] {
+                let found = measured(hz, name);
+                for (found, mark) in found.iter().zip(marks) {
+                    let late = found.map(|s| s - mark);
+                    assert!(
+                        late.is_some_and(|late| (0.0..=1.0 / hz).contains(&late)),
+                        "{name} at {hz} Hz: {found:?} for {mark}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_recovery_that_forgets_too_soon_is_seen_as_such() {
+        let [half, tenth, hundredth] = measured(120.0, "recovery-literal");
+        // √((2 ln2 / 3)·T·Δt) = 0.088 s where 0.413 s is meant.
+        assert!(half.is_some_and(|s| s < 0.12), "{half:?}");
+        assert!(
+            tenth < Some(0.25) && hundredth < Some(0.4),
+            "{tenth:?} {hundredth:?}"
+        );
+    }
 }

@@ -19,6 +19,7 @@ pub mod state_hash;
 pub mod tick;
 pub mod true_bodies;
 pub mod voxel_field;
+pub mod weight;
 pub mod work;
 
 pub use checkpoint::Checkpoint;

@@ -4,11 +4,13 @@ use libtest_mimic::Failed;
 use sward::base::{Real, Vec3, vec3};
 use sward::field::wind_pose;
 use sward::run::Engine;
+use sward::scene::method::Recovery;
 use sward::sim::Meadow;
 use sward::sim::cpu::{poses, segment_length};
 use sward::sim::measure::{GrassState, Standing};
 use sward::sim::recover::{Fading, offset_left};
 use sward::sim::slab::Slab;
+use sward::sim::weight::offset_weight;
 
 use super::Measured;
 use super::rig::{CALM, PlantKey, Rig, Setting, all_in_wind_pose, ensure};
@@ -58,7 +60,9 @@ pub fn release(setting: &Setting) -> Measured {
                 rig.run_to(tick.max(rig.meadow.ticks), u32::MAX)?;
                 let now = rig.plants()?;
                 for (key, held) in &held {
-                    let left = weight(held, now.get(key).ok_or("a plant is gone too soon")?);
+                    let now = now.get(key).ok_or("a plant is gone too soon")?;
+                    let left = offset_weight(held.into(), now.into(), Recovery::Lengths)
+                        .ok_or("a pose does not tell its weight")?;
                     ensure((left <= share) == passed, || {
                         let at_s = f64::from(tick - released) * substep_s;
                         format!(
@@ -87,34 +91,22 @@ fn bent_plants(rig: &mut Rig) -> Result<Vec<(PlantKey, Standing<f64>)>, Failed> 
         .plants()?
         .into_iter()
         .filter(|(_, plant)| plant.touched_at == now);
-    Ok(held.filter(|(_, plant)| bend(plant).1 > 0.3).collect())
+    Ok(held
+        .filter(|(_, plant)| largest_turn(plant) > 0.3)
+        .collect())
 }
 
-/// The segment that was turned farthest from the wind pose, and the sine of its turn.
-fn bend(plant: &Standing<f64>) -> (usize, f64) {
+/// The sine of the largest turn of a segment from the wind pose.
+fn largest_turn(plant: &Standing<f64>) -> f64 {
     let turns = (0..plant.nodes.len() - 1).map(|j| {
         let [wind, now] = [&plant.wind, &plant.nodes].map(|nodes| segment(nodes, j));
-        (j, wind.cross(now).length() / (wind.length() * now.length()))
+        wind.cross(now).length() / (wind.length() * now.length())
     });
-    turns.fold(
-        (0, 0.0),
-        |most, next| if next.1 > most.1 { next } else { most },
-    )
+    turns.fold(0.0, f64::max)
 }
 
 fn segment<R: Real>(nodes: &[Vec3<R>], j: usize) -> Vec3<f64> {
     Vec3::of(nodes[j + 1].to_f64()) - Vec3::of(nodes[j].to_f64())
-}
-
-/// The share of the offset that a pose still has. A segment points along w + s·d, whatever its
-/// length, with w of the wind pose and d of the offset: s = −(u × w)·(u × d) / |u × d|².
-fn weight(held: &Standing<f64>, now: &Standing<f64>) -> f64 {
-    let (j, _) = bend(held);
-    let wind = segment(&held.wind, j);
-    let offset = segment(&held.nodes, j) - wind;
-    let along = segment(&now.nodes, j);
-    let (a, b) = (along.cross(wind), along.cross(offset));
-    -a.dot(b) / b.length_squared()
 }
 
 /// When the tip that was farthest from its wind pose had ½, 0.1 and 0.01 of that left, in seconds:

@@ -163,6 +163,11 @@ fn a_failing_scenario_leaves_a_bundle() {
         let png = std::fs::read(bundle.join("end.png")).expect("a picture of the end");
         assert!(png.starts_with(b"\x89PNG"));
     }
+    // Notes say why there is no picture.
+    assert_ne!(
+        bundle.join("notes.txt").exists(),
+        bundle.join("end.png").exists()
+    );
     // The bundle stands for itself: its assets are in it.
     std::fs::remove_dir_all(&assets).expect("the folder");
     let recording = text(&bundle.join("fails.recording"));
@@ -170,4 +175,31 @@ fn a_failing_scenario_leaves_a_bundle() {
     assert_eq!(code(&replay), 0, "{}", said(&replay));
     let replay = sward(&["replay", &recording, "--engine", "cpu"]);
     assert_eq!(code(&replay), 1, "it fails again");
+}
+
+#[test]
+fn a_scenario_that_could_not_begin_says_why_there_is_no_picture() {
+    let folder = folder("not begun");
+    let scene = file(&folder, "roll.ron", ROLL);
+    let out = folder.join("out");
+    // A fourth of the shortest sub-step that a scene may have.
+    let output = sward(&[
+        "run",
+        &scene,
+        "--engine",
+        "cpu",
+        "--substep",
+        "1e-4",
+        "--method",
+        "grass-steps-4",
+        "--out",
+        &text(&out),
+    ]);
+    assert_eq!(code(&output), 3, "{}", said(&output));
+    let notes = std::fs::read_to_string(out.join("roll/notes.txt")).expect("notes");
+    assert!(
+        notes.contains("after 0 whole sub-steps") && notes.contains("no end.png"),
+        "{notes}"
+    );
+    assert!(!out.join("roll/end.png").exists());
 }

@@ -7,18 +7,21 @@ use std::path::{Path, PathBuf};
 use super::outputs::{FileTrace, ResultFile};
 use super::scene_file;
 use crate::app::{Failure, complain};
-use crate::gpu::{Gpu, GpuError};
-use crate::render::PictureTarget;
 use crate::run::report::Report;
-use crate::run::{Device, Outcome, Recording, Stage};
+use crate::run::{Device, Recording, RunOptions};
 use crate::scene::{LoadedScene, limits};
+
+mod picture;
+
+pub use picture::End;
+use picture::picture;
 
 const TRACE: &str = "trace.csv";
 const SCENE: &str = "scene.ron";
 const METRICS: &str = "metrics.json";
 const PICTURE: &str = "end.png";
-/// Width and height of the picture, in pixels.
-const PICTURE_SIZE: [u32; 2] = [960, 540];
+/// How the run ended, and why there is no picture: only where there is something to say.
+const NOTES: &str = "notes.txt";
 
 /// A folder that is filled if its scenario fails, and goes if it passes.
 pub struct Bundle {
@@ -34,7 +37,7 @@ impl Bundle {
     ///
     /// A folder that cannot be written to.
     pub fn open(folder: PathBuf, name: &str) -> Result<Self, Failure> {
-        for file in [SCENE, METRICS, PICTURE, &recording_name(name)] {
+        for file in [SCENE, METRICS, PICTURE, NOTES, &recording_name(name)] {
             let path = folder.join(file);
             match fs::remove_file(&path) {
                 Err(error) if error.kind() != io::ErrorKind::NotFound => {
@@ -66,7 +69,7 @@ impl Bundle {
     /// # Errors
     ///
     /// A file that cannot be written, or an asset that has changed since it was read.
-    pub fn fill(self, contents: &Contents<'_>, ended: Option<Outcome>) -> Result<PathBuf, Failure> {
+    pub fn fill(self, contents: &Contents<'_>, end: End) -> Result<PathBuf, Failure> {
         let Self { folder, trace } = self;
         let path = folder.join(TRACE);
         trace.finish().map_err(|e| Failure::file(&path, e))?;
@@ -79,13 +82,23 @@ impl Bundle {
         if let Some(recording) = contents.recording {
             write(&recording_name(contents.name), &text_of(recording)?)?;
         }
-        if let Some(outcome) = ended {
-            match picture(contents.loaded, outcome, contents.device) {
-                Ok(Some(png)) => write(PICTURE, &png)?,
-                Ok(None) => log::info!("no adapter: no picture of {}", contents.name),
-                // The rest of the bundle is worth more than its picture.
-                Err(error) => complain(&format!("no picture of {}: {error}", contents.name)),
+        let mut notes = String::new();
+        if let End::BrokenOff { ticks, error } = &end {
+            notes.push_str(&format!(
+                "The run ended early, after {ticks} whole sub-steps: {error}\n\
+                 {PICTURE} is drawn from doing it again up to there on the cpu engine.\n"
+            ));
+        }
+        match picture(contents.loaded, contents.options, end, contents.device) {
+            Ok(png) => write(PICTURE, &png)?,
+            // The rest of the bundle is worth more than its picture.
+            Err(reason) => {
+                complain(&format!("no picture of {}: {reason}", contents.name));
+                notes.push_str(&format!("There is no {PICTURE}: {reason}\n"));
             }
+        }
+        if !notes.is_empty() {
+            write(NOTES, notes.as_bytes())?;
         }
         Ok(folder)
     }
@@ -99,6 +112,7 @@ pub struct Contents<'a> {
     pub report: &'a Report,
     pub recording: Option<&'a Recording>,
     pub device: &'a Device,
+    pub options: &'a RunOptions,
     /// Folders of assets besides the scene's own.
     pub asset_dirs: &'a [PathBuf],
 }
@@ -124,28 +138,4 @@ pub fn recording_name(scene: &str) -> String {
 pub fn text_of(recording: &Recording) -> Result<Vec<u8>, Failure> {
     let text = recording.to_text().map_err(io::Error::other)?;
     Ok(text.into_bytes())
-}
-
-/// The scene as it stands at its end, as a PNG; `None` without an adapter.
-fn picture(
-    loaded: &LoadedScene,
-    outcome: Outcome,
-    device: &Device,
-) -> Result<Option<Vec<u8>>, Failure> {
-    let gpu = match device.gpu() {
-        Some(gpu) => gpu.clone(),
-        None => match Gpu::headless() {
-            Ok(gpu) => gpu,
-            Err(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }) => return Ok(None),
-            Err(error) => return Err(error.into()),
-        },
-    };
-    let target = PictureTarget::new(&gpu, PICTURE_SIZE)?;
-    let time = format!("{:.6} s", outcome.meadow.time_s());
-    let format = PictureTarget::FORMAT;
-    let mut stage = Stage::of_run(&gpu, loaded, outcome, format, PICTURE_SIZE)?;
-    let view = stage.camera(None)?;
-    stage.draw(&gpu, &view, &target.view, false)?;
-    let texts = [("Scene", loaded.name.as_str()), ("Time", &time)];
-    Ok(Some(target.read(&gpu)?.to_png(&texts)?))
 }

@@ -16,10 +16,13 @@ pub struct Follower<'a> {
     pub frames: Option<&'a mut FileTrace>,
     pub recorder: Option<Recorder>,
     pub verifier: Option<Verifier<'a>>,
+    /// Whole sub-steps so far.
+    pub ticks: u32,
 }
 
 impl RunWatcher for Follower<'_> {
     fn tick(&mut self, meadow: &Meadow, engine: &mut Engine) -> Result<(), GpuError> {
+        self.ticks = meadow.ticks;
         if let Some(recorder) = &mut self.recorder {
             recorder.tick(meadow, engine);
         }

@@ -98,6 +98,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
         frames: None,
         recorder: None,
         verifier: arguments.verify.then(|| Verifier::new(&recording)),
+        ticks: 0,
     };
     let outcome = run_watched(&loaded, &recording.options(), &device, &mut follower)?;
     let verified = follower.verifier.take().map(|v| compare(&recording, &v));

@@ -96,7 +96,10 @@ fn plan(arguments: &Accuracy) -> Result<Plan, Failure> {
         (true, true) => accuracy::quick_methods(),
         (true, false) => accuracy::all_methods(),
     };
-    let mut plan = Plan::default();
+    let mut plan = Plan {
+        blades: arguments.method.is_empty(),
+        ..Plan::default()
+    };
     if !arguments.scene.is_empty() {
         for scene in &arguments.scene {
             plan.scenes.push(Planned::new(load(scene)?, &methods));

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
 
-use super::bundle::{Bundle, Contents, recording_name, text_of};
+use super::bundle::{Bundle, Contents, End, recording_name, text_of};
 use super::follow::Follower;
 use super::outputs::{FileTrace, ResultFile, finish_trace};
 use super::scene_file;
@@ -250,19 +250,21 @@ impl Batch<'_> {
             frames: bundle.as_mut().map(|bundle| &mut bundle.trace),
             recorder,
             verifier: None,
+            ticks: 0,
         };
         let outcome = catch_unwind(AssertUnwindSafe(|| {
             run_watched(&loaded, self.options, self.device, &mut follower)
         }));
         let recorder = follower.recorder.take();
+        let ticks = follower.ticks;
         drop(follower);
-        let (scenario, ended) = judged(&name, outcome);
+        let (scenario, end) = judged(&name, ticks, outcome);
         let kept = Kept {
             own_name,
             loaded: &loaded,
             recorder,
         };
-        match self.keep(&kept, record, bundle, &scenario, ended) {
+        match self.keep(&kept, record, bundle, &scenario, end) {
             Ok(()) => scenario,
             Err(error) => Scenario::broken(name, error.to_string(), error.exit()),
         }
@@ -275,7 +277,7 @@ impl Batch<'_> {
         record: Option<ResultFile>,
         bundle: Option<Bundle>,
         scenario: &Scenario,
-        ended: Option<Outcome>,
+        end: End,
     ) -> Result<(), Failure> {
         let recording = kept.recorder.as_ref().map(Recorder::recording);
         if let (Some(file), Some(recording)) = (record, recording) {
@@ -295,9 +297,10 @@ impl Batch<'_> {
             report: &report,
             recording,
             device: self.device,
+            options: self.options,
             asset_dirs: &self.arguments.assets,
         };
-        let folder = bundle.fill(&contents, ended)?;
+        let folder = bundle.fill(&contents, end)?;
         let (name, folder) = (&scenario.name, folder.display());
         complain(&format!("{name} failed; see {folder}"));
         Ok(())
@@ -312,35 +315,29 @@ struct Kept<'a> {
     recorder: Option<Recorder>,
 }
 
-/// The report of a run, and its end where it came to one.
+/// The report of a run, and how it ended after so many whole sub-steps.
 fn judged(
     name: &str,
+    ticks: u32,
     outcome: std::thread::Result<Result<Outcome, RunError>>,
-) -> (Scenario, Option<Outcome>) {
-    match outcome {
+) -> (Scenario, End) {
+    let (error, exit) = match outcome {
         Ok(Ok(outcome)) => {
             for body in outcome.meadow.bodies.quarantined() {
                 complain(&format!(
                     "{name}: `{body}` was taken out: its place or motion is no finite number"
                 ));
             }
-            (Scenario::of(&outcome), Some(outcome))
+            return (Scenario::of(&outcome), End::Whole(Box::new(outcome)));
         }
-        Ok(Err(error)) => {
-            let exit = exit_of_run(&error);
-            (
-                Scenario::broken(name.to_owned(), error.to_string(), exit),
-                None,
-            )
-        }
-        Err(_) => {
-            let error = format!("{name}: internal error, see the message above");
-            (
-                Scenario::broken(name.to_owned(), error, Exit::Internal),
-                None,
-            )
-        }
-    }
+        Ok(Err(error)) => (error.to_string(), exit_of_run(&error)),
+        Err(_) => (
+            format!("{name}: internal error, see the message above"),
+            Exit::Internal,
+        ),
+    };
+    let scenario = Scenario::broken(name.to_owned(), error.clone(), exit);
+    (scenario, End::BrokenOff { ticks, error })
 }
 
 fn print_json(report: &Report, out: &mut impl Write) -> io::Result<()> {

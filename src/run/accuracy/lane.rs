@@ -11,6 +11,10 @@ use crate::sim::Meadow;
 /// numbers.
 pub const FRAMES_PER_S: f64 = 30.0;
 
+/// Entries of the reference's table of resting blades, whose error falls with their square: for the
+/// default kind 1e-5 of a blade's length.
+pub const REFERENCE_TABLE: [u32; 2] = [512, 256];
+
 /// What a lane computes with.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind<'a> {
@@ -55,14 +59,18 @@ impl Lane {
         })
     }
 
-    /// Lays a scene out in `f64` with settings of a reference, which go beyond what a scene may
-    /// ask for, so that they come after it was laid out. They leave the field as it is.
+    /// Lays a scene out in `f64`, with resting blades from a fine table, and with settings of a
+    /// reference, which go beyond what a scene may ask for, so that they come after it was laid out.
     ///
     /// # Errors
     ///
     /// A scene that cannot be laid out.
     pub fn reference(loaded: &LoadedScene, solver: Solver) -> Result<Self, RunError> {
-        let mut lane = Self::new(loaded, &loaded.scene.solver, Kind::Double)?;
+        let laid_out = Solver {
+            blade_table: REFERENCE_TABLE,
+            ..loaded.scene.solver.clone()
+        };
+        let mut lane = Self::new(loaded, &laid_out, Kind::Double)?;
         lane.meadow.scene.solver = solver;
         Ok(lane)
     }

@@ -5,6 +5,7 @@
 //! (gpu − cpu), precision (cpu in `f32` − the same in `f64`) and the method's own (in `f64` −
 //! reference).
 
+mod blades;
 mod cost;
 mod lane;
 mod measure;
@@ -17,6 +18,7 @@ mod truth;
 
 use std::io;
 
+pub use blades::Blades;
 pub use cost::{CostRow, METHODS as COST_METHODS, SCENE as COST_SCENE};
 pub use plot::{PlotError, error_plot, summary_plot};
 pub use store::{Row, Store};
@@ -26,6 +28,7 @@ use super::bench::Machine;
 use super::methods::{METHODS, NamedMethod, method};
 use super::report::Adapter;
 use super::scenario::{Device, RunError};
+use crate::field::blade_table::TableError;
 use crate::scene::{LoadedScene, Motion, Scene, to_ron};
 use truth::Truth;
 
@@ -33,13 +36,15 @@ use truth::Truth;
 pub const FLOOR: &str = "noise floor";
 
 /// Methods that the quick report leaves out: inner points of curves whose ends it has.
-const NOT_QUICK: [&str; 6] = [
+const NOT_QUICK: [&str; 8] = [
     "cube-128",
     "bilinear-16",
     "voxels-64",
     "rounds-2",
     "segments-6",
     "grass-steps-2",
+    "table-32",
+    "table-256",
 ];
 
 /// Frames of a reference count as so many points in the progress: two of them in `f64` at eight
@@ -50,6 +55,8 @@ const TRUTH_POINTS: f64 = 6.0;
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
     pub scenes: Vec<Planned>,
+    /// Whether the resting shapes of blades are measured too.
+    pub blades: bool,
 }
 
 /// A scene of a plan.
@@ -57,23 +64,41 @@ pub struct Plan {
 pub struct Planned {
     pub loaded: LoadedScene,
     pub methods: Vec<&'static NamedMethod>,
-    /// Methods that change the step of the bodies, on a scene whose bodies are free: they would
-    /// not move alike, so nothing could be said of the grass.
-    pub left_out: Vec<&'static str>,
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A method that cannot be compared on a scene, and why.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeftOut {
+    pub method: &'static str,
+    pub why: &'static str,
 }
 
 impl Planned {
     /// A scene with the methods that can be compared on it.
     pub fn new(loaded: LoadedScene, methods: &[&'static NamedMethod]) -> Self {
         let free = has_free_bodies(&loaded.scene);
-        let (methods, left_out): (Vec<_>, Vec<_>) = methods
-            .iter()
-            .partition(|method| !free || keeps_body_step(&loaded.scene, method));
-        Self {
+        let mut planned = Self {
             loaded,
-            methods,
-            left_out: left_out.iter().map(|method| method.name).collect(),
+            methods: Vec::new(),
+            left_out: Vec::new(),
+        };
+        for &method in methods {
+            let scene = &planned.loaded.scene;
+            let why = if !method.keeps_blades(&scene.solver) {
+                "its blades are other ones, whose rest the section on segments and root compares"
+            } else if free && !keeps_body_step(scene, method) {
+                "it steps the bodies otherwise, and free bodies would go another way"
+            } else {
+                planned.methods.push(method);
+                continue;
+            };
+            planned.left_out.push(LeftOut {
+                method: method.name,
+                why,
+            });
         }
+        planned
     }
 }
 
@@ -117,6 +142,7 @@ pub struct Report {
     pub scenes: Vec<SceneReport>,
     /// Cost at equal sub-steps, where the plan has its scene.
     pub cost: Vec<CostRow>,
+    pub blades: Option<Blades>,
 }
 
 /// The points of a scene.
@@ -128,7 +154,7 @@ pub struct SceneReport {
     pub half_blade_m: f64,
     pub floor: Row,
     pub rows: Vec<Row>,
-    pub left_out: Vec<&'static str>,
+    pub left_out: Vec<LeftOut>,
 }
 
 /// Why a report ended early. What was measured is in the file.
@@ -136,6 +162,8 @@ pub struct SceneReport {
 pub enum AccuracyError {
     #[error(transparent)]
     Run(#[from] RunError),
+    #[error(transparent)]
+    Blades(#[from] TableError),
     #[error("cannot write a measured point: {0}")]
     Store(#[from] io::Error),
 }
@@ -172,11 +200,13 @@ pub fn run(
         Some(planned) => cost::measure(&planned.loaded, &planned.methods)?,
         None => Vec::new(),
     };
+    let blades = plan.blades.then(Blades::measure).transpose()?;
     Ok(Report {
         machine,
         adapter,
         scenes,
         cost,
+        blades,
     })
 }
 
@@ -238,7 +268,8 @@ fn key(loaded: &LoadedScene, name: &str, gpu: Option<&Device>) -> String {
     let scene = to_ron(&loaded.scene).unwrap_or_default();
     let device = gpu.and_then(Device::gpu).map(Adapter::of);
     let version = env!("CARGO_PKG_VERSION");
-    let whole = format!("{version}\n{name}\n{scene}\n{solver:?}\n{device:?}");
+    let truth = lane::REFERENCE_TABLE;
+    let whole = format!("{version}\n{name}\n{scene}\n{solver:?}\n{device:?}\n{truth:?}");
     // FNV-1a.
     let hash = whole.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
@@ -255,6 +286,7 @@ fn half_blade_m(scene: &Scene) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::methods::ROOT_PAPER;
 
     fn loaded() -> LoadedScene {
         crate::scene::parse_scene(
@@ -272,6 +304,7 @@ mod tests {
         let methods = [method("default"), method("analytic")].map(|m| m.expect("a name"));
         let plan = Plan {
             scenes: vec![Planned::new(loaded(), &methods)],
+            ..Plan::default()
         };
         let mut store = Store::in_memory();
         run(&plan, &mut store, None, |_| {}).expect("a scene that runs");
@@ -300,12 +333,16 @@ mod tests {
     }
 
     #[test]
-    fn free_bodies_leave_out_other_body_steps() {
+    fn free_bodies_leave_out_other_body_steps_and_all_leave_out_other_blades() {
+        let names = |planned: &Planned| -> Vec<&str> {
+            planned.left_out.iter().map(|out| out.method).collect()
+        };
+        let led = Planned::new(loaded(), &all_methods());
+        assert_eq!(names(&led), [ROOT_PAPER]);
         let mut free = loaded();
         free.scene.bodies[0].motion = Motion::Free;
-        let planned = Planned::new(free, &all_methods());
-        assert!(planned.left_out.contains(&"substep-480"));
-        assert!(!planned.left_out.contains(&"grass-steps-4"));
-        assert!(Planned::new(loaded(), &all_methods()).left_out.is_empty());
+        let left_out = Planned::new(free, &all_methods());
+        assert!(names(&left_out).contains(&"substep-480"));
+        assert!(!names(&left_out).contains(&"grass-steps-4"));
     }
 }

@@ -24,6 +24,9 @@ pub fn write_markdown(report: &Report, out: &mut impl Write) -> io::Result<()> {
     write_summary(&summary, out)?;
     write_split(&summary, out)?;
     write_cost(report, out)?;
+    if let Some(blades) = &report.blades {
+        blades.write(out)?;
+    }
     for scene in &report.scenes {
         write_scene(scene, out)?;
     }
@@ -266,12 +269,11 @@ fn write_scene(scene: &SceneReport, out: &mut impl Write) -> io::Result<()> {
              poses and sides is no verdict on a method."
         )?;
     }
-    if !scene.left_out.is_empty() {
+    for out_of in &scene.left_out {
         writeln!(
             out,
-            "\nLeft out, since they step the bodies otherwise and free bodies would go another way: \
-             {}.",
-            scene.left_out.join(", ")
+            "\nLeft out: `{}`, since {}.",
+            out_of.method, out_of.why
         )?;
     }
     writeln!(out)
