@@ -20,6 +20,8 @@
 var<private> nodes: array<vec3f, MAX_NODES>;
 var<private> wind_nodes: array<vec3f, MAX_NODES>;
 var<private> faces: array<u32, MAX_SEGMENTS>;
+// Where the upper node of the segment that is being laid out was before.
+var<private> before: vec3f;
 
 // Direction of segment j in the wind pose.
 fn rest_direction(j: u32) -> vec3f {
@@ -110,7 +112,7 @@ fn meet_part(
     j: u32,
     laying: bool,
 ) -> u32 {
-    let reach = Reach(nodes[j], select(-1.0, length, laying));
+    let reach = Reach(nodes[j], select(-1.0, length, laying), before);
     let exit = way_out(contact, pose, nodes[j + 1u], faces[j], reach);
     if exit.face == NO_FACE {
         return 0u;
@@ -136,6 +138,7 @@ fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, layi
         let part = select(step / field.segments, step % parts, laying);
         let j = select(step % field.segments, step / parts, laying);
         if laying && part == 0u {
+            before = nodes[j + 1u];
             let direction = unit_or(nodes[j + 1u] - nodes[j], rest_direction(j));
             nodes[j + 1u] = nodes[j] + direction * length;
             lay_on_ground(tile, length, j);

@@ -87,7 +87,11 @@ fn nearly_holds(contact: u32, vertex: vec3f) -> bool {
 // vertex's segment in the anchor's coordinates.
 fn way_out(contact: u32, pose: Pose, vertex: vec3f, memory: u32, reach: Reach) -> Exit {
     let p = inverse_point(pose, vertex);
-    let segment = Reach(inverse_point(pose, reach.start), reach.length);
+    let segment = Reach(
+        inverse_point(pose, reach.start),
+        reach.length,
+        inverse_point(pose, reach.before),
+    );
     var kept = NO_FACE;
     if (memory & ~FACE_MASK) == contacts[contact].key && (memory & FACE_MASK) != 0u {
         kept = (memory & FACE_MASK) - 1u;

@@ -95,9 +95,8 @@ fn cube_exit(solid: SolidRecord, p: vec3f, kept: u32, reach: Reach) -> Exit {
         if !sample.hit || sample.behind <= 0.0 {
             return outside();
         }
-        let price = cost(reach, p, sample.behind, sample.normal)
-            + select(0.0, HIDDEN_M, sample.hidden);
-        offer(&choice, kept, price, Exit(sample.behind, sample.normal, face));
+        let exit = Exit(sample.behind, sample.normal, face);
+        offer(&choice, p, kept, reach, exit, select(0.0, HIDDEN_M, sample.hidden));
     }
     return take(choice);
 }

@@ -40,6 +40,8 @@ struct Reach {
     start: vec3f,
     // Its length; less than 0 if anything can be reached.
     length: f32,
+    // Where the upper node was before the segment was laid out.
+    before: vec3f,
 }
 
 // What the way out of p by `depth` along a normal costs.
@@ -49,35 +51,63 @@ fn cost(reach: Reach, p: vec3f, depth: f32, normal: vec3f) -> f32 {
     return select(depth, depth + OUT_OF_REACH_M, far);
 }
 
-// The cheapest way out among those offered, and the one through the kept face.
+// True where the upper node was beyond the surface that a way out of p leads to.
+fn came_through(reach: Reach, p: vec3f, exit: Exit) -> bool {
+    return reach.length >= 0.0
+        && dot(reach.before - p, exit.normal) > exit.depth - CAME_THROUGH_M;
+}
+
+// The cheapest way out among those offered, the one through the kept face, and the cheapest back
+// where a laid out node came in.
 struct Choice {
     best: Exit,
     least: f32,
     keep: Exit,
     keep_cost: f32,
+    back: Exit,
+    back_cost: f32,
 }
 
 fn no_choice() -> Choice {
-    return Choice(outside(), 0.0, outside(), 0.0);
+    return Choice(outside(), 0.0, outside(), 0.0, outside(), 0.0);
 }
 
-fn offer(choice: ptr<function, Choice>, kept: u32, cost: f32, exit: Exit) {
+// `surcharge` is added to what the way costs.
+fn offer(
+    choice: ptr<function, Choice>,
+    p: vec3f,
+    kept: u32,
+    reach: Reach,
+    exit: Exit,
+    surcharge: f32,
+) {
+    let price = cost(reach, p, exit.depth, exit.normal) + surcharge;
     if exit.face == kept {
         (*choice).keep = exit;
-        (*choice).keep_cost = cost;
+        (*choice).keep_cost = price;
     }
-    if (*choice).best.face == NO_FACE || cost < (*choice).least {
+    if (*choice).best.face == NO_FACE || price < (*choice).least {
         (*choice).best = exit;
-        (*choice).least = cost;
+        (*choice).least = price;
+    }
+    let cheaper = (*choice).back.face == NO_FACE || price < (*choice).back_cost;
+    if price < OUT_OF_REACH_M && cheaper && came_through(reach, p, exit) {
+        (*choice).back = exit;
+        (*choice).back_cost = price;
     }
 }
 
-// The kept way out while no other is cheaper by KEEP_FACE.
+// The kept way out while no other is cheaper by KEEP_FACE; never to the far side of where a laid out
+// node can go back.
 fn take(choice: Choice) -> Exit {
+    var exit = choice.best;
     if choice.keep.face != NO_FACE && choice.keep_cost * KEEP_FACE <= choice.least {
-        return choice.keep;
+        exit = choice.keep;
     }
-    return choice.best;
+    if choice.back.face != NO_FACE && dot(choice.back.normal, exit.normal) < OPPOSITE {
+        return choice.back;
+    }
+    return exit;
 }
 
 // Features that a way out may lead through.
@@ -160,7 +190,7 @@ fn solid_exit(solid: SolidRecord, p: vec3f, kept: u32, reach: Reach) -> Exit {
             return outside();
         }
         let exit = Exit(found.w, found.xyz, face);
-        offer(&choice, kept, cost(reach, p, found.w, found.xyz), exit);
+        offer(&choice, p, kept, reach, exit, 0.0);
     }
     return take(choice);
 }

@@ -21,7 +21,7 @@ use crate::sim::contact::FACE_MASK;
 use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIDDEN_M, HIT, LEAST_WEIGHT};
 use crate::sim::recover::ASIDE;
 use crate::sim::relax::{ON_GROUND_M, STICKS};
-use crate::sim::solid::{KEEP_FACE, NO_FACE, OUT_OF_REACH_M};
+use crate::sim::solid::{CAME_THROUGH_M, KEEP_FACE, NO_FACE, OPPOSITE, OUT_OF_REACH_M};
 
 /// A WGSL file, embedded, with the Rust constants it uses.
 #[derive(Clone, Copy, Debug)]
@@ -132,8 +132,10 @@ pub const SHARED: &[WgslFile] = &[
     wgsl_file!("shared/rigid.wgsl"),
     wgsl_file!(
         "shared/solid.wgsl",
+        CAME_THROUGH_M,
         KEEP_FACE,
         NO_FACE,
+        OPPOSITE,
         OUT_OF_REACH_M,
         SOLID_BALL,
         SOLID_BOX,

@@ -32,6 +32,16 @@ enum ColliderOf<'a, R> {
     Voxels(&'a VoxelField),
 }
 
+/// A segment that was laid out at its length, in the anchor's coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct Laid<R> {
+    /// Its lower node.
+    pub from: Vec3<R>,
+    pub length: R,
+    /// Where its upper node was before.
+    pub before: Vec3<R>,
+}
+
 /// Bits of a vertex's memory that hold the face; 0 there means none, others are the face + 1.
 const FACE_BITS: u32 = 8;
 /// The bits of the face.
@@ -92,19 +102,20 @@ impl<'a, R: Real> Touch<'a, R> {
 
     /// The way out for a vertex inside the part at `pose`, with its normal turned into the anchor's
     /// coordinates. `memory` is the vertex's word about the face it left through last; it is kept
-    /// up to date. `segment` is the lower node and the length of the vertex's segment where only
-    /// ways out in its reach count.
+    /// up to date. Where the vertex was laid out at the end of a `segment`, only ways out in the
+    /// segment's reach count.
     pub fn exit(
         &self,
         pose: &Pose<R>,
         vertex: Vec3<R>,
         memory: &mut u32,
-        segment: Option<(Vec3<R>, R)>,
+        segment: Option<&Laid<R>>,
     ) -> Option<Exit<R>> {
         let p = pose.inverse_point(vertex);
-        let reach = segment.map_or_else(Reach::anywhere, |(from, length)| Reach {
-            from: pose.inverse_point(from),
-            length,
+        let reach = segment.map_or_else(Reach::anywhere, |laid| Reach {
+            from: pose.inverse_point(laid.from),
+            length: laid.length,
+            before: pose.inverse_point(laid.before),
         });
         let kept = if *memory & !FACE_MASK == self.key && *memory & FACE_MASK != 0 {
             (*memory & FACE_MASK) - 1

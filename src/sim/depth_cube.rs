@@ -135,7 +135,7 @@ impl DepthCube {
         if !self.inside(p) {
             return None;
         }
-        let mut choice = Choice::new(kept);
+        let mut choice = Choice::new(p, kept, reach);
         for face in 0..6 {
             let surface = self.sample(p, face)?;
             let normal = surface.normal;
@@ -144,18 +144,17 @@ impl DepthCube {
                 (Push::Ratio, Sampling::Planes) => surface.behind,
                 (Push::Ratio, _) => surface.along_axis * axis(normal, face / 2).abs(),
             };
-            let mut cost = reach.cost(p, depth, normal);
-            if surface.hidden {
-                cost += R::of(HIDDEN_M);
-            }
-            choice.offer(
-                cost,
-                Exit {
-                    depth,
-                    normal,
-                    face,
-                },
-            );
+            let exit = Exit {
+                depth,
+                normal,
+                face,
+            };
+            let surcharge = if surface.hidden {
+                R::of(HIDDEN_M)
+            } else {
+                R::ZERO
+            };
+            choice.offer(exit, surcharge);
         }
         choice.take()
     }

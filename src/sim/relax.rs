@@ -18,7 +18,7 @@ use crate::field::{Anchor, Nodes};
 use crate::scene::method::{Collide, Springs};
 use crate::terrain::HeightGrid;
 
-use super::contact::Touch;
+use super::contact::{Laid, Touch};
 use super::fault::{Fault, Planted};
 use super::springs::{self, LiteralBlade, relax_blade};
 
@@ -170,16 +170,17 @@ impl<'a, R: Real> Bodies<'a, R> {
     /// lengths in turn reaches slowly where a blade meets a body head on.
     fn turn_out(
         &self,
-        from: Vec3<R>,
+        laid: &Laid<R>,
         to: Vec3<R>,
         rest: Vec3<R>,
         face: &mut u32,
         place: &Place<R>,
     ) -> (Vec3<R>, bool) {
+        let from = laid.from;
         let mut to = to;
         let mut turned = false;
         for (touch, pose) in &self.posed {
-            let Some(exit) = touch.exit(pose, to, face, Some((from, place.length))) else {
+            let Some(exit) = touch.exit(pose, to, face, Some(laid)) else {
                 continue;
             };
             let n = exit.normal;
@@ -261,7 +262,12 @@ fn lay_out<R: Real>(
         let rest = (place.wind[j + 1] - place.wind[j]).unit_or(Vec3::UP);
         let direction = (nodes[j + 1] - from).unit_or(rest);
         let next = place.lay_on_ground(from, from + direction * place.length, rest);
-        let (next, turned) = bodies.turn_out(from, next, rest, face, place);
+        let laid = Laid {
+            from,
+            length: place.length,
+            before: nodes[j + 1],
+        };
+        let (next, turned) = bodies.turn_out(&laid, next, rest, face, place);
         nodes[j + 1] = place.lay_on_ground(from, next, rest);
         pushed |= u32::from(turned) << (j + 1);
     }

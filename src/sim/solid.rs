@@ -68,6 +68,8 @@ pub struct Reach<R> {
     pub from: Vec3<R>,
     /// Its length, in metres; less than 0 if anything can be reached.
     pub length: R,
+    /// Where the upper node was before the segment was laid out, in the space of the solid.
+    pub before: Vec3<R>,
 }
 
 /// A way out of reach counts as longer by this, in metres: more than any body's size.
@@ -79,6 +81,7 @@ impl<R: Real> Reach<R> {
         Self {
             from: Vec3::ZERO,
             length: -R::ONE,
+            before: Vec3::ZERO,
         }
     }
 
@@ -91,7 +94,19 @@ impl<R: Real> Reach<R> {
             depth
         }
     }
+
+    /// True where the upper node was beyond the surface that a way out of `p` leads to: it came in
+    /// that way.
+    fn came_through(&self, p: Vec3<R>, exit: &Exit<R>) -> bool {
+        self.length >= R::ZERO
+            && (self.before - p).dot(exit.normal) > exit.depth - R::of(CAME_THROUGH_M)
+    }
 }
+
+/// A node this close below a surface was beyond it, in metres: it may have been held there.
+pub const CAME_THROUGH_M: f64 = 1e-3;
+/// Two ways out lead to opposite sides where their normals' product is below this.
+pub const OPPOSITE: f64 = -0.5;
 
 /// The way out of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -225,12 +240,9 @@ impl<R: Real> Solid<R> {
         match self {
             Self::Union(members) => whole::exit(members, p, kept, reach),
             Self::Mesh { mesh, skin } => whole::mesh_exit(mesh, p, *skin),
-            _ => nearest(
-                self.feature_count(),
-                kept,
-                |depth, normal| reach.cost(p, depth, normal),
-                |face| self.feature(p, face),
-            ),
+            _ => nearest(self.feature_count(), Choice::new(p, kept, reach), |face| {
+                self.feature(p, face)
+            }),
         }
     }
 
@@ -297,58 +309,74 @@ impl<R: Real> Solid<R> {
 /// The cheapest of `count` features that all have the point on their inner side.
 fn nearest<R: Real>(
     count: u32,
-    kept: u32,
-    cost: impl Fn(R, Vec3<R>) -> R,
+    mut choice: Choice<R>,
     feature: impl Fn(u32) -> (R, Vec3<R>),
 ) -> Option<Exit<R>> {
-    let mut choice = Choice::new(kept);
     for face in 0..count {
         let (depth, normal) = feature(face);
         if depth <= R::ZERO {
             return None;
         }
-        choice.offer(
-            cost(depth, normal),
-            Exit {
-                depth,
-                normal,
-                face,
-            },
-        );
+        let exit = Exit {
+            depth,
+            normal,
+            face,
+        };
+        choice.offer(exit, R::ZERO);
     }
     choice.take()
 }
 
-/// The cheapest way out among those offered, or the kept one while no other is clearly cheaper.
-pub(super) struct Choice<R> {
+/// The cheapest way out among those offered, or the kept one while no other is clearly cheaper. A
+/// node that a segment's length has drawn into a body does not leave it on the far side while it
+/// can go back where it came in: it would have gone through.
+pub(super) struct Choice<'a, R> {
+    p: Vec3<R>,
     kept: u32,
+    reach: &'a Reach<R>,
     best: Option<(R, Exit<R>)>,
     keep: Option<(R, Exit<R>)>,
+    back: Option<(R, Exit<R>)>,
 }
 
-impl<R: Real> Choice<R> {
-    pub fn new(kept: u32) -> Self {
+impl<'a, R: Real> Choice<'a, R> {
+    /// For a point that left through the feature `kept` last.
+    pub fn new(p: Vec3<R>, kept: u32, reach: &'a Reach<R>) -> Self {
         Self {
+            p,
             kept,
+            reach,
             best: None,
             keep: None,
+            back: None,
         }
     }
 
-    pub fn offer(&mut self, cost: R, exit: Exit<R>) {
+    /// `surcharge` is added to what the way costs.
+    pub fn offer(&mut self, exit: Exit<R>, surcharge: R) {
+        let cost = self.reach.cost(self.p, exit.depth, exit.normal) + surcharge;
+        let is_less = |than: &Option<(R, Exit<R>)>| than.is_none_or(|(least, _)| cost < least);
         if exit.face == self.kept {
             self.keep = Some((cost, exit));
         }
-        if self.best.is_none_or(|(least, _)| cost < least) {
+        if is_less(&self.best) {
             self.best = Some((cost, exit));
+        }
+        let is_open = cost < R::of(OUT_OF_REACH_M);
+        if is_open && is_less(&self.back) && self.reach.came_through(self.p, &exit) {
+            self.back = Some((cost, exit));
         }
     }
 
     pub fn take(self) -> Option<Exit<R>> {
         let (least, best) = self.best?;
-        Some(match self.keep {
+        let cheapest = match self.keep {
             Some((cost, keep)) if cost * R::of(KEEP_FACE) <= least => keep,
             _ => best,
+        };
+        Some(match self.back {
+            Some((_, back)) if back.normal.dot(cheapest.normal) < R::of(OPPOSITE) => back,
+            _ => cheapest,
         })
     }
 }

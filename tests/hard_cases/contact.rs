@@ -159,9 +159,9 @@ const DEGENERATE: &[(&str, &str, [f64; 3])] = &[
 ];
 /// Frames over which a vertex must leave through the same face.
 const STEADY_FRAMES: u32 = 100;
-/// Frames after which blades under a fixed body have found their place: the second that every case
-/// of a body at rest leaves them.
-const SETTLED_FRAMES: u32 = 60;
+/// Frames after which blades under a fixed body have found their place: 3 s, nine times the time of
+/// bend springs at 3 per second, which by then have e⁻⁹ of their way left.
+const SETTLED_FRAMES: u32 = 180;
 
 /// A vertex at the centre of a body, on its medial axis, an edge, a corner, a texel's border: no
 /// way out is the shortest there. Choosing anew in every frame makes the blade jump from side to
@@ -187,12 +187,15 @@ pub fn degenerate_point(setting: &Setting) -> Measured {
             let changed = now
                 .iter()
                 .zip(&before)
-                .filter(|(now, before)| now != before)
+                .filter(|(now, before)| **now != 0 && **before != 0 && now != before)
                 .count();
             if frame > SETTLED_FRAMES && changed > 0 {
                 flips.push(format!("{what}: {changed} faces changed in frame {frame}"));
             }
-            before = now;
+            // A vertex that is met for the first time, or let go, has not changed its face.
+            for (before, now) in before.iter_mut().zip(now) {
+                *before = if now == 0 { *before } else { now };
+            }
         }
         rig.look()?;
         pushed += before.iter().filter(|&&face| face != 0).count();

@@ -71,7 +71,11 @@ fn a_way_out_must_be_in_the_segments_reach() {
     };
     let face = |length: f64| {
         let from = vec3(0.0, -0.05, 0.1);
-        let reach = Reach { from, length };
+        let reach = Reach {
+            from,
+            length,
+            before: from,
+        };
         plank
             .exit(vec3(0.0, 0.0, 0.17), NO_FACE, &reach)
             .map(|e| e.face)

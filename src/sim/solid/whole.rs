@@ -103,7 +103,7 @@ pub(super) fn exit<R: Real>(
     kept: u32,
     reach: &Reach<R>,
 ) -> Option<Exit<R>> {
-    let mut choice = Choice::new(kept);
+    let mut choice = Choice::new(p, kept, reach);
     let mut first_face = 0;
     for (n, member) in members.iter().enumerate() {
         let local = member.pose.inverse_point(p);
@@ -117,16 +117,17 @@ pub(super) fn exit<R: Real>(
                     other != n
                         && member.solid.depth(member.pose.inverse_point(end)) > R::of(COVERED_M)
                 });
-                let mut cost = reach.cost(p, depth, normal);
-                if covered {
-                    cost += R::of(OUT_OF_REACH_M);
-                }
+                let surcharge = if covered {
+                    R::of(OUT_OF_REACH_M)
+                } else {
+                    R::ZERO
+                };
                 let exit = Exit {
                     depth,
                     normal,
                     face: (first_face + face) % FACES,
                 };
-                choice.offer(cost, exit);
+                choice.offer(exit, surcharge);
             }
         }
         first_face += faces;
