@@ -154,7 +154,8 @@ fn drawn_edge(ground: &HeightGrid, full_m: &[f32], drawn: &DrawnMesh) -> Vec<f32
             for place in first..=last {
                 let along =
                     (f64::from(place) - f64::from(from)) / (f64::from(to) - f64::from(from));
-                let height_m = f64::from(start_m) + along * f64::from(end_m - start_m);
+                let [start_m, end_m] = [start_m, end_m].map(f64::from);
+                let height_m = start_m + along * (end_m - start_m);
                 let count = edge_m.len();
                 edge_m[place as usize % count] = height_m as f32;
             }
@@ -201,6 +202,9 @@ mod tests {
         };
         mesh.update(&tree, &view, &detail).expect("a mesh");
         let edge_m = drawn_edge(&ground, &full_m, &mesh.in_view(&tree, &view, 0.0));
-        assert_eq!(edge_m, full_m);
+        for (drawn, full) in edge_m.iter().zip(&full_m) {
+            // Where three samples lie in line the middle one is not a corner: f32 rounding.
+            assert!((drawn - full).abs() < 1e-6, "{drawn} {full}");
+        }
     }
 }
