@@ -30,7 +30,7 @@ impl Default for TerrainDetail {
     fn default() -> Self {
         Self {
             error_px: 1.0,
-            budget: 60_000,
+            budget: 30_000,
         }
     }
 }

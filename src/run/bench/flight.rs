@@ -6,7 +6,7 @@ use crate::terrain::HeightGrid;
 
 /// Length of the flight, in seconds, and frames in each.
 pub const FLIGHT_S: u32 = 30;
-pub const FRAMES_PER_S: u32 = 30;
+pub const FRAMES_PER_S: u32 = 10;
 /// Vertical field of view, in degrees.
 const FOV_DEG: f32 = 55.0;
 /// The flight's start and end over the ground, and its lowest part, in metres.

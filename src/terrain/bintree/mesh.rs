@@ -38,7 +38,8 @@ pub struct MeshChange {
     pub triangles: usize,
     pub splits: usize,
     pub merges: usize,
-    /// Largest error left in the picture, in pixels.
+    /// Largest error left, in pixels. Above the error that need not be mended it is one in the
+    /// picture.
     pub worst_px: f32,
     /// The budget kept diamonds from being split that should have been.
     pub is_bound: bool,

@@ -207,7 +207,7 @@ impl<F: FnMut(SeedTriangle)> Traversal<'_, F> {
             && known.is_near
             && known.core.is_none()
         {
-            self.report_all(&triangle, self.last_depth - depth);
+            self.report_all(&triangle);
         } else {
             let middle = self.middle(corners[1], corners[2], sample);
             self.visit([&middle, corners[0], corners[1]], depth + 1, known);
@@ -327,15 +327,38 @@ impl<F: FnMut(SeedTriangle)> Traversal<'_, F> {
     }
 
     /// Reports everything below a triangle of which nothing is to be asked any more.
-    fn report_all(&mut self, triangle: &Triangle, splits: u32) {
-        match triangle.split_point().filter(|_| splits > 0) {
-            Some(middle) => {
+    fn report_all(&mut self, triangle: &Triangle) {
+        let [apex, [x, _], [_, z]] = [triangle.apex, triangle.base[0], triangle.base[1]];
+        let [other_z, other_x] = [triangle.base[0][1], triangle.base[1][0]];
+        // One leg runs along x and the other along z, unless the base does.
+        let [dx, dz] = if other_z == apex[1] && other_x == apex[0] {
+            [x - apex[0], z - apex[1]]
+        } else if x == apex[0] && z == apex[1] {
+            [other_x - apex[0], other_z - apex[1]]
+        } else {
+            if let Some(middle) = triangle.split_point() {
                 for half in triangle.halves(middle) {
-                    self.report_all(&half, splits - 1);
+                    self.report_all(&half);
                 }
             }
-            None => self.report(triangle),
+            return;
+        };
+        let half = u32::from(dz < 0);
+        let count = dx.abs();
+        // The first cell at the right angle, and the way from there.
+        let cell = |from: i32, step: i32, n: i32| (from + step.min(0) + step * n) as u32;
+        for row in 0..count {
+            let z = cell(apex[1], dz.signum(), row);
+            for column in 0..count - row {
+                let cell = [cell(apex[0], dx.signum(), column), z];
+                (self.found)(SeedTriangle { cell, half });
+                if column + 1 < count - row {
+                    let half = 1 - half;
+                    (self.found)(SeedTriangle { cell, half });
+                }
+            }
         }
+        self.counts.found += (count * count) as u64;
     }
 }
 

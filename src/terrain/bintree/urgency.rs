@@ -42,6 +42,7 @@ pub(super) struct Judge<'a> {
     wedgies: &'a Wedgies,
     sight: Sight<'a>,
     pixel_rad: f32,
+    idle_px: f32,
     held_m: f32,
     pins: &'a HashSet<u32>,
 }
@@ -58,12 +59,14 @@ impl<'a> Judge<'a> {
             wedgies,
             sight: Sight::new(lattice, viewpoint, detail.canopy_m),
             pixel_rad: viewpoint.pixel_rad as f32,
+            idle_px: detail.error_px,
             held_m: detail.held_m,
             pins,
         }
     }
 
-    /// Pixels of error that splitting may mend; 0 where nothing can be seen of it.
+    /// Pixels of error that splitting may mend; 0 where nothing can be seen of it. An error that
+    /// need not be mended is told without asking whether it can be seen.
     pub(super) fn urgency(&self, diamond: &Diamond) -> f32 {
         let index = self.lattice.index(diamond.centre);
         let half_m = self.wedgies.half_m(index);
@@ -77,18 +80,18 @@ impl<'a> Judge<'a> {
                 continue;
             }
             let bounds = self.sight.bounds(&triangle, half_m);
-            let is_seen = self.sight.crossed(&bounds, ALL_SIDES).is_some();
-            if !is_seen && !is_pinned {
-                continue;
-            }
             let away_m = bounds.distance_m();
             let error_px = half_m / (away_m.max(NEAR_M) * self.pixel_rad);
             let is_held = is_pinned || (half_m > HELD_ERROR_M && away_m <= self.held_m);
-            most = most.max(if is_held {
-                error_px.max(LEAST_HELD_PX) * HELD
-            } else {
-                error_px
-            });
+            if !is_held && error_px <= self.idle_px.max(most) {
+                most = most.max(error_px);
+            } else if is_pinned || self.sight.crossed(&bounds, ALL_SIDES).is_some() {
+                most = most.max(if is_held {
+                    error_px.max(LEAST_HELD_PX) * HELD
+                } else {
+                    error_px
+                });
+            }
         }
         most
     }
