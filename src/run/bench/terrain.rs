@@ -1,8 +1,8 @@
 //! The bench of the ground: what a flight costs the processor by the size of the terrain.
 //!
 //! Square terrains of the same hills are flown over on the same path, so that what can be seen of
-//! plants is the same on all. Times are of one thread. What does not change anything is done
-//! several times a frame, of which the shortest counts.
+//! plants is the same on all. Times are of one thread. Everything is done several times a frame from
+//! the same start, of which the shortest counts.
 
 use std::hint::black_box;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::field::{Bounds, Field, FieldError};
 use crate::render::{BladeDetail, TerrainDetail, View};
 use crate::scene::assets::Assets;
 use crate::scene::{Grass, Ground, Solver, Terrain};
-use crate::terrain::bintree::{Bintree, Mesh, MeshDetail, MeshError, SeedCounts};
+use crate::terrain::bintree::{Bintree, Mesh, MeshChange, MeshDetail, MeshError, SeedCounts};
 use crate::terrain::{TerrainError, height_grid};
 
 /// Sides of the terrains, in metres: 1, 4, 20 and 80 km², the latter two less what keeps the
@@ -235,9 +235,14 @@ impl<'a> Flight<'a> {
             held_m: reach_m + 2.0 * field.grid.tile_m() + field.reach_m,
             canopy_m: field.reach_m,
         };
-        let started = Instant::now();
-        let change = self.mesh.update(tree, &viewpoint, &detail)?;
-        let mesh_ms = started.elapsed().as_secs_f64() * 1e3;
+        let before = std::mem::replace(&mut self.mesh, Mesh::new(tree));
+        let (mut change, mut mesh_ms) = (MeshChange::default(), f64::INFINITY);
+        for _ in 0..REPEATS {
+            self.mesh.clone_from(&before);
+            let started = Instant::now();
+            change = self.mesh.update(tree, &viewpoint, &detail)?;
+            mesh_ms = mesh_ms.min(started.elapsed().as_secs_f64() * 1e3);
+        }
 
         let mut in_view = 0;
         let list_ms = shortest_ms(|| {

@@ -63,7 +63,7 @@ fn from_high_above_every_triangle_is_found_once() {
         let ground = hills(columns, rows, 2.0);
         let tree = Bintree::new(Arc::clone(&ground));
         let [x, z] = ground.centre_m;
-        let above = looking(Vec3::new(x, 2000.0, z), 0.0, -1.570_796);
+        let above = looking(Vec3::new(x, 2000.0, z), 0.0, -1.57);
         let [wide, deep] = cells(&ground, halvings);
         let all = found(&tree, &above, &seeding(halvings, 1e4));
         assert_eq!(all.len(), 2 * wide as usize * deep as usize);
@@ -128,7 +128,7 @@ fn drops_no_visible_plant(ground: Arc<HeightGrid>, hides: bool) {
                     (a, b)
                 };
                 let root = at[0] + (at[1] - at[0]) * a + (at[2] - at[0]) * b;
-                let (turn, lean) = (random(n, 22) * 6.28, 1.5 * random(n, 23));
+                let (turn, lean) = (random(n, 22) * std::f64::consts::TAU, 1.5 * random(n, 23));
                 let blade = Vec3::new(lean.sin() * turn.cos(), lean.cos(), lean.sin() * turn.sin());
                 let tip = root + blade * f64::from(PLANT_M);
                 if sees(&viewpoint, tip) {
@@ -172,7 +172,7 @@ fn reach_is_that_of_the_closest_corner() {
     let ground = hills(60, 48, 2.0);
     let tree = Bintree::new(Arc::clone(&ground));
     let [x, z] = ground.centre_m;
-    let above = looking(Vec3::new(x + 3.0, 40.0, z), 0.3, -1.570_796);
+    let above = looking(Vec3::new(x + 3.0, 40.0, z), 0.3, -1.57);
     let near = found(&tree, &above, &seeding(1, 45.0));
     let all = found(&tree, &above, &seeding(1, 1e4));
     let is_near = |t: &SeedTriangle| {

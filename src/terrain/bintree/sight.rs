@@ -65,6 +65,17 @@ impl<'a> Sight<'a> {
         }
     }
 
+    /// Horizontal distance of a triangle's nearest point from the eye at most, in metres: without
+    /// a look at the heights.
+    pub(super) fn level_distance_m(&self, triangle: &Triangle) -> f32 {
+        let [low, high] = triangle.bounds().map(|p| self.lattice.on_terrain(p));
+        let away = [0, 1].map(|axis| {
+            let along = |n: i32| self.corner_from_eye[axis] + f64::from(n) * self.spacing_m;
+            along(low[axis]).max(-along(high[axis])).max(0.0) as f32
+        });
+        (away[0] * away[0] + away[1] * away[1]).sqrt()
+    }
+
     /// Which of the sides in `open` the box with its plants crosses; `None` if it lies wholly
     /// beyond one of them. What lies within a side need not be asked again for parts of the box.
     pub(super) fn crossed(&self, bounds: &EyeBox, open: Crossed) -> Option<Crossed> {

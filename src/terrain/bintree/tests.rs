@@ -33,7 +33,7 @@ pub(super) fn somewhere(ground: &HeightGrid, k: u32) -> Viewpoint {
     let [wide, deep] = ground.size_m();
     let x = ground.centre_m[0] + (random(k, 0) - 0.5) * 1.2 * wide;
     let z = ground.centre_m[1] + (random(k, 1) - 0.5) * 1.2 * deep;
-    let above_m = if k % 3 == 0 {
+    let above_m = if k.is_multiple_of(3) {
         1.7
     } else {
         1.0 + 80.0 * random(k, 2)
@@ -270,7 +270,7 @@ fn what_is_in_view_and_near_or_pinned_has_full_resolution() {
                 let [drawn, truth] = heights_at(&ground, corners, w);
                 let place = place_of(&ground, corners, w, truth);
                 let away_m = (place - viewpoint.eye_in_world).length();
-                let [x, z] = [place.x, place.z].map(|v| v);
+                let (x, z) = (place.x, place.z);
                 let [cx, cz] = ground.corner_in_world();
                 let at = [(x - cx) / 2.0, (z - cz) / 2.0];
                 let is_pinned = (0..2)

@@ -79,9 +79,16 @@ impl<'a> Judge<'a> {
             if self.lattice.side(&triangle) == Side::Outside {
                 continue;
             }
+            // Most are far enough for this to settle it.
+            let level_m = self.sight.level_distance_m(&triangle);
+            let level_px = self.error_at(half_m, level_m);
+            if !is_pinned && level_m > self.held_m && level_px <= self.idle_px {
+                most = most.max(level_px);
+                continue;
+            }
             let bounds = self.sight.bounds(&triangle, half_m);
             let away_m = bounds.distance_m();
-            let error_px = half_m / (away_m.max(NEAR_M) * self.pixel_rad);
+            let error_px = self.error_at(half_m, away_m);
             let is_held = is_pinned || (half_m > HELD_ERROR_M && away_m <= self.held_m);
             if !is_held && error_px <= self.idle_px.max(most) {
                 most = most.max(error_px);
@@ -94,6 +101,10 @@ impl<'a> Judge<'a> {
             }
         }
         most
+    }
+
+    fn error_at(&self, half_m: f32, away_m: f32) -> f32 {
+        half_m / (away_m.max(NEAR_M) * self.pixel_rad)
     }
 
     /// The error in pixels behind an urgency.
