@@ -21,6 +21,10 @@ struct Ground {
     pad: f32,
     map_m: vec2f, // extent of the base-colour map
     pad_b: vec2f,
+    eye_sample_from_eye: vec3f, // a sample near the eye, at height 0
+    pad_c: f32,
+    eye_sample: vec2i, // its column and row
+    pad_d: vec2i,
 }
 
 struct Chunk {
@@ -37,6 +41,8 @@ struct Chunk {
 @group(3) @binding(2) var<storage, read> chunks: array<Chunk>;
 @group(3) @binding(3) var base_colour: texture_2d<f32>;
 @group(3) @binding(4) var base_sampler: sampler;
+// Drawn height of the field's edge, sample by sample around it; see `edge_sample`.
+@group(3) @binding(5) var<storage, read> edge_heights_m: array<f32>;
 
 struct GroundPoint {
     @builtin(position) clip: vec4f,
@@ -79,6 +85,47 @@ fn field_vertex(
     let place = vec2f(f32(column), f32(row)) * ground.spacing_m;
     let clip = frame.clip_from_eye * vec4f(position, 1.0);
     return GroundPoint(clip, position, normal_at(column, row), place, 0.0);
+}
+
+// `vertex` is a sample's rank, row by row: a corner of the bintree's mesh. Places are counted from
+// a sample near the eye, so that near ones are exact on a field of any size.
+@vertex
+fn mesh_vertex(@builtin(vertex_index) vertex: u32) -> GroundPoint {
+    let column = vertex % ground.columns;
+    let row = vertex / ground.columns;
+    let across = vec2f(vec2i(i32(column), i32(row)) - ground.eye_sample) * ground.spacing_m;
+    let position = ground.eye_sample_from_eye + vec3f(across.x, height_at(column, row), across.y);
+    let place = vec2f(f32(column), f32(row)) * ground.spacing_m;
+    let clip = frame.clip_from_eye * vec4f(position, 1.0);
+    return GroundPoint(clip, position, vec3f(0.0, 1.0, 0.0), place, 0.0);
+}
+
+// Height between samples, smoothed over the squares; `at` counts samples.
+fn smooth_height(at: vec2f) -> f32 {
+    let low = floor(at);
+    let part = at - low;
+    let first = vec2u(max(low, vec2f(0.0)));
+    let last = vec2u(max(low + 1.0, vec2f(0.0)));
+    let near = mix(height_at(first.x, first.y), height_at(last.x, first.y), part.x);
+    let far = mix(height_at(first.x, last.y), height_at(last.x, last.y), part.x);
+    return mix(near, far, part.y);
+}
+
+// Smooth normal at a place, from heights as far apart as the samples, or as a pixel is long.
+// It is that of the full ground, however coarsely it is drawn.
+fn smooth_normal(place: vec2f, pixel_m: f32) -> vec3f {
+    let at = place / ground.spacing_m;
+    let step = max(1.0, pixel_m / ground.spacing_m);
+    let end = vec2f(f32(ground.columns - 1u), f32(ground.rows - 1u));
+    let west = max(at.x - step, 0.0);
+    let east = min(at.x + step, end.x);
+    let north = max(at.y - step, 0.0);
+    let south = min(at.y + step, end.y);
+    let rise_x = (smooth_height(vec2f(east, at.y)) - smooth_height(vec2f(west, at.y)))
+        / (east - west);
+    let rise_z = (smooth_height(vec2f(at.x, south)) - smooth_height(vec2f(at.x, north)))
+        / (south - north);
+    return normalize(vec3f(-rise_x, ground.spacing_m, -rise_z));
 }
 
 // Sample `step` of the walk around the field's edge, from its corner along x first.
@@ -127,7 +174,7 @@ fn land_vertex(@builtin(vertex_index) vertex: u32) -> GroundPoint {
     let out_m = LAND_RINGS_M[ring];
     let shift = direction * out_m;
     let place = edge + shift;
-    let edge_y = height_at(sample.x, sample.y);
+    let edge_y = edge_heights_m[step % ground.edge_steps];
     let y = land_height(edge_y, place, max(out_m, 0.0));
     let step_m = 2.0 + 0.1 * max(out_m, 0.0);
     let rise_x = far_hills(place + vec2f(step_m, 0.0), out_m) - far_hills(place, out_m);
@@ -206,6 +253,17 @@ fn bumped(normal: vec3f, position: vec3f, relief_m: f32) -> vec3f {
 
 @fragment
 fn ground_fragment(in: GroundPoint) -> @location(0) vec4f {
+    return lit_ground(in);
+}
+
+@fragment
+fn mesh_fragment(in: GroundPoint) -> @location(0) vec4f {
+    var point = in;
+    point.normal = smooth_normal(in.place_in_field, length(in.position_from_eye) * frame.pixel_rad);
+    return lit_ground(point);
+}
+
+fn lit_ground(in: GroundPoint) -> vec4f {
     let distance = length(in.position_from_eye);
     let to_eye = -in.position_from_eye / max(distance, 1e-6);
     let facing_eye = max(dot(to_eye, normalize(in.normal)), 0.004);

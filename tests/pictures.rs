@@ -9,7 +9,7 @@ use sward::base::Vec3;
 use sward::gpu::{Gpu, PassTimer};
 use sward::render::{
     ActiveNodes, BladeDetail, BladesInput, Exposure, FrameInput, GroundLook, Picture,
-    PictureTarget, Renderer, Sun, View, bodies_at,
+    PictureTarget, Renderer, Sun, TerrainDetail, View, bodies_at,
 };
 use sward::scene::Scene;
 use sward::sim::{Grass, Meadow, tick};
@@ -29,6 +29,10 @@ const CHECKS: &[(&str, Check)] = &[
         plants_from_seeds_and_from_nodes_look_alike,
     ),
     ("pressed_grass_shows", pressed_grass_shows),
+    (
+        "a_coarser_ground_looks_like_the_full_one",
+        a_coarser_ground_looks_like_the_full_one,
+    ),
     (
         "what_cannot_be_drawn_is_refused",
         what_cannot_be_drawn_is_refused,
@@ -311,6 +315,45 @@ fn pressed_grass_shows(gpu: &Gpu) -> Result<(), Failed> {
     hold(
         near > 10.0 && far < 0.01,
         format!("near the press {near} steps, far from it {far}"),
+    )
+}
+
+/// A field large enough to be drawn through its bintree: in full, within a pixel, and within many.
+fn a_coarser_ground_looks_like_the_full_one(gpu: &Gpu) -> Result<(), Failed> {
+    let scene = "(terrain: (ground: Rolling(size_m: (600, 600), spacing_m: 5, amplitude_m: 30, \
+        wavelength_m: 200, octaves: 5, seed: 3)), grass: (species: []))";
+    let mut stage = Stage::new(gpu, scene, 0)?;
+    let far = Shown {
+        view: View::look_at(Vec3::new(0.0, 90.0, 330.0), Vec3::ZERO, 45.0),
+        bodies: false,
+        blades: false,
+        active: false,
+    };
+    let mut shoot = |error_px: f32| -> Result<_, Failed> {
+        stage.renderer.terrain_detail = TerrainDetail {
+            error_px,
+            budget: 40_000,
+        };
+        let picture = stage.shoot(gpu, far)?;
+        let mesh = stage.renderer.ground_mesh().ok_or("no mesh was drawn")?;
+        Ok((picture, mesh))
+    };
+    let (full, all) = shoot(0.0)?;
+    let (fine, few) = shoot(1.0)?;
+    let (coarse, fewer) = shoot(30.0)?;
+    hold(
+        all.worst_px == 0.0 && few.triangles < all.triangles / 2,
+        format!("{all:?}, {few:?}"),
+    )?;
+    hold(fewer.triangles < few.triangles, format!("{fewer:?}"))?;
+    // Outlines move by a pixel at most, of a contrast of some tens of steps, and are few.
+    let (near, off) = (
+        difference(&full, &fine, WHOLE),
+        difference(&full, &coarse, WHOLE),
+    );
+    hold(
+        near < 3.0 && near < 0.5 * off,
+        format!("within a pixel {near} steps, within thirty {off}"),
     )
 }
 

@@ -7,6 +7,7 @@ use crate::field::blade_shape::ShapeError;
 use crate::gpu::GpuError;
 use crate::render::RenderError;
 use crate::run::accuracy::{AccuracyError, PlotError};
+use crate::run::bench::TerrainBenchError;
 use crate::run::{Exit, RunError, StageError};
 use crate::scene::SceneError;
 
@@ -116,6 +117,12 @@ impl From<PlotError> for Failure {
 impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
         Self::Stage(error.into())
+    }
+}
+
+impl From<TerrainBenchError> for Failure {
+    fn from(error: TerrainBenchError) -> Self {
+        Self::Internal(error.to_string())
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod blade_shape;
 pub mod blade_table;
 pub mod grid;
+pub mod in_view;
 pub mod octree;
 pub mod plant;
 pub mod pose;
@@ -19,13 +20,17 @@ pub use slabs::SlabPool;
 pub use tiles::{ActiveTile, ActiveTiles, TileState};
 pub use wind::WindNow;
 
+use std::sync::Arc;
+
 use crate::scene::{Grass, Solver};
 use crate::terrain::HeightGrid;
+use crate::terrain::bintree::Bintree;
 
 /// Everything about a meadow that does not change while it is simulated.
 #[derive(Clone, Debug)]
 pub struct Field {
-    pub ground: HeightGrid,
+    pub ground: Arc<HeightGrid>,
+    pub bintree: Arc<Bintree>,
     pub grid: FieldGrid,
     pub seeds: Seeds,
     pub table: BladeTable,
@@ -53,7 +58,9 @@ impl Field {
             .species
             .iter()
             .fold(0.0_f32, |reach, kind| reach.max(kind.height_m[1]));
+        let ground = Arc::new(ground);
         Ok(Self {
+            bintree: Arc::new(Bintree::new(Arc::clone(&ground))),
             ground,
             grid,
             seeds,

@@ -7,12 +7,12 @@
 //! makes up for those left out.
 
 use crate::base::Vec3;
-use crate::field::{Bounds, TileId};
+use crate::field::TileId;
 use crate::gpu::field_data::TileRecord;
 use crate::gpu_struct;
 
 use super::blades::BladesInput;
-use super::camera::View;
+use super::camera::{Frustum, View};
 use super::error::RenderError;
 
 /// How far and how finely blades are drawn.
@@ -114,42 +114,50 @@ struct Sight {
 fn tiles_in_sight(input: &BladesInput<'_>, view: &View, aspect: f32) -> Vec<Sight> {
     let field = input.field;
     let frustum = view.frustum(aspect);
-    let eye = view.eye_in_world.to_f64();
-    let reach = f64::from(input.detail.reach_m);
-    let around = Bounds {
-        low: eye.map(|x| x - reach),
-        high: eye.map(|x| x + reach),
-    };
-    let tall = f64::from(field.reach_m);
-    let mut seen = Vec::new();
-    field
-        .octree
-        .query(&field.grid, &field.ground, &around, tall, |tile| {
-            let [low, high] = field.grid.tile_bounds(tile, &field.ground);
-            let heights = field.grid.tile_heights(tile, &field.ground).map(f64::from);
-            // A blade may lean over its tile's border, and hang below a slope.
-            let low = [low[0] - tall, heights[0] - 0.5 * tall, low[1] - tall];
-            let high = [high[0] + tall, heights[1] + tall, high[1] + tall];
-            let nearest = [0, 1, 2].map(|a| eye[a].clamp(low[a], high[a]) - eye[a]);
-            let mut distance_m = Vec3::<f64>::of(nearest).length();
-            if distance_m < reach && frustum.may_see(low, high) {
-                if slab_of(input, tile).is_some() {
-                    distance_m *= ACTIVE_NEARNESS;
-                }
-                let band = band_at(input.detail, distance_m);
-                seen.push(Sight {
-                    tile,
-                    distance_m,
-                    band,
-                });
-            }
-        });
+    // A tile's box may be nearer than the closest corner of its ground.
+    let margin_m = 3.0 * field.grid.tile_m() + 2.0 * field.reach_m;
+    let reach_m = input.detail.reach_m + margin_m;
+    let mut seen: Vec<Sight> = field
+        .tiles_in_view(&view.viewpoint(aspect, 1), reach_m)
+        .into_iter()
+        .filter_map(|tile| sight_of(input, view, &frustum, tile))
+        .collect();
     seen.sort_by(|a, b| {
         a.distance_m
             .total_cmp(&b.distance_m)
             .then(a.tile.cmp(&b.tile))
     });
     seen
+}
+
+/// How a tile is seen, if it is in view and within reach.
+fn sight_of(
+    input: &BladesInput<'_>,
+    view: &View,
+    frustum: &Frustum,
+    tile: TileId,
+) -> Option<Sight> {
+    let field = input.field;
+    let tall = f64::from(field.reach_m);
+    let [low, high] = field.grid.tile_bounds(tile, &field.ground);
+    let heights = field.grid.tile_heights(tile, &field.ground).map(f64::from);
+    // A blade may lean over its tile's border, and hang below a slope.
+    let low = [low[0] - tall, heights[0] - 0.5 * tall, low[1] - tall];
+    let high = [high[0] + tall, heights[1] + tall, high[1] + tall];
+    let eye = view.eye_in_world.to_f64();
+    let nearest = [0, 1, 2].map(|a| eye[a].clamp(low[a], high[a]) - eye[a]);
+    let mut distance_m = Vec3::<f64>::of(nearest).length();
+    if distance_m >= f64::from(input.detail.reach_m) || !frustum.may_see(low, high) {
+        return None;
+    }
+    if slab_of(input, tile).is_some() {
+        distance_m *= ACTIVE_NEARNESS;
+    }
+    Some(Sight {
+        tile,
+        distance_m,
+        band: band_at(input.detail, distance_m),
+    })
 }
 
 /// Draw calls, near to far: each a band and its tiles. `first_tile` is left to the caller.

@@ -8,6 +8,7 @@ use glam::camera::rh::{proj::directx, view::look_to_mat4};
 use glam::{Mat4, Vec4};
 
 use crate::base::Vec3;
+use crate::terrain::bintree::Viewpoint;
 
 /// Distance of the near plane, in metres: closer than any blade is worth looking at.
 const NEAR_M: f32 = 0.03;
@@ -83,6 +84,20 @@ impl View {
         Frustum {
             eye_in_world: self.eye_in_world,
             inward: [w + x, w - x, w + y, w - y].map(Vec4::truncate),
+        }
+    }
+
+    /// The view for a picture of this width over height and this many rows, as the ground's
+    /// bintree takes it.
+    pub fn viewpoint(&self, aspect: f32, rows: u32) -> Viewpoint {
+        let half_high = (0.5 * f64::from(self.fov_rad)).tan();
+        Viewpoint {
+            eye_in_world: self.eye_in_world,
+            right: self.right(),
+            up: self.up(),
+            forward: self.forward,
+            half_tan: [half_high * f64::from(aspect), half_high],
+            pixel_rad: f64::from(self.pixel_rad(rows)),
         }
     }
 

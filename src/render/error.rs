@@ -1,6 +1,7 @@
 //! What can go wrong while a picture is made.
 
 use crate::gpu::GpuError;
+use crate::terrain::bintree::MeshError;
 
 /// An error of the renderer.
 #[derive(Debug, thiserror::Error)]
@@ -38,6 +39,9 @@ pub enum RenderError {
         found: String,
         wanted: &'static str,
     },
+
+    #[error("the ground's mesh: {0}")]
+    Mesh(#[from] MeshError),
 
     #[error("writing the picture as PNG: {0}")]
     Png(#[from] png::EncodingError),

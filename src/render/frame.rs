@@ -3,12 +3,14 @@
 use crate::bodies::RigidShape;
 use crate::field::Field;
 use crate::gpu::{Gpu, PassTimer};
+use crate::terrain::bintree::MeshChange;
 
 use super::blades::{BladeCounts, BladesInput, BladesLayer, Canopy};
 use super::bodies::{BodiesLayer, BodyInstance};
 use super::camera::View;
 use super::error::RenderError;
 use super::ground_look::{GroundLook, GroundTexture};
+use super::ground_mesh::TerrainDetail;
 use super::overlay::{OverlayLayer, TileMark};
 use super::shadow::{ShadowFit, ShadowMap};
 use super::sky::{SkyLayer, Sun};
@@ -31,6 +33,8 @@ pub struct Renderer {
     targets: Targets,
     resolved_light: wgpu::BindGroup,
     samples: u32,
+    /// How finely the ground of a large field is drawn from the next frame on.
+    pub terrain_detail: TerrainDetail,
 }
 
 /// Everything that may change from one frame to the next.
@@ -76,6 +80,7 @@ impl Renderer {
             groups,
             shadow,
             samples,
+            terrain_detail: TerrainDetail::default(),
         })
     }
 
@@ -93,7 +98,7 @@ impl Renderer {
         let colour = GroundTexture::new(gpu, look.map)?;
         let canopy = Canopy::of(field);
         self.terrain
-            .set_ground(gpu, &field.ground, &colour, look.soil_rgb, canopy)?;
+            .set_ground(gpu, field, &colour, look.soil_rgb, canopy)?;
         self.blades.set_field(gpu, field, &colour)?;
         self.set_shapes(gpu, shapes)
     }
@@ -121,6 +126,11 @@ impl Renderer {
     /// What the last frame drew of the plants.
     pub fn blade_counts(&self) -> BladeCounts {
         self.blades.counts
+    }
+
+    /// What the last frame's ground mesh is; `None` for a small field, which is drawn in full.
+    pub fn ground_mesh(&self) -> Option<MeshChange> {
+        self.terrain.mesh_change()
     }
 
     /// Width and height of the pictures, in pixels.
@@ -178,7 +188,9 @@ impl Renderer {
         let detail = input.blades.map(|blades| blades.detail);
         let frame = Frame::new(input.view, size, &light, &fit, detail, input.time_s);
         self.groups.write(gpu, frame)?;
-        self.terrain.write(gpu, input.view, aspect)?;
+        let blades = input.blades.as_ref();
+        self.terrain
+            .write(gpu, input.view, size, self.terrain_detail, blades)?;
         if let Some(blades) = &input.blades {
             blades.detail.check()?;
             self.blades.write(gpu, input.view, aspect, blades)?;

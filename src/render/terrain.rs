@@ -1,18 +1,26 @@
 //! The ground: the exact triangles of the height samples, and land around them to the horizon.
 //!
-//! The field is drawn in chunks of samples; one index list serves all of them, since a chunk
+//! A small field is drawn in chunks of samples; one index list serves all of them, since a chunk
 //! starts at an even sample and so repeats the cut of its squares. A chunk's place is taken
-//! relative to the eye in `f64`. Shader: `shaders/terrain.wgsl`.
+//! relative to the eye in `f64`. A large one is drawn as the mesh of its bintree (`ground_mesh.rs`).
+//! Shader: `shaders/terrain.wgsl`.
+
+use std::sync::Arc;
 
 use wgpu::{BufferUsages, ShaderStages};
 
+use crate::base::Vec3;
+use crate::field::Field;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::gpu_struct;
 use crate::terrain::HeightGrid;
+use crate::terrain::bintree::MeshChange;
 
-use super::blades::Canopy;
+use super::blades::{BladesInput, Canopy};
 use super::camera::View;
+use super::error::RenderError;
 use super::ground_look::GroundTexture;
+use super::ground_mesh::{GroundMesh, TerrainDetail};
 use super::pipeline::{DepthUse, Drawing, READ_STORAGE, UNIFORM, bind_group, group_layout};
 use super::view_group::ViewGroups;
 
@@ -41,6 +49,10 @@ gpu_struct! {
         pad: f32,
         map_m: [f32; 2],
         pad_b: [f32; 2],
+        eye_sample_from_eye: [f32; 3],
+        pad_c: f32,
+        eye_sample: [i32; 2],
+        pad_d: [i32; 2],
     }
 }
 
@@ -67,8 +79,12 @@ struct ChunkBounds {
 #[derive(Debug)]
 struct GroundScene {
     ground: Ground,
-    corner_in_world: [f64; 2],
+    heights: Arc<HeightGrid>,
+    /// Chunks of a small field.
     chunks: Vec<ChunkBounds>,
+    /// The mesh of a large one.
+    mesh: Option<GroundMesh>,
+    edge: Buffer<f32>,
     uniform: Buffer<Ground>,
     records: Buffer<Chunk>,
     group: wgpu::BindGroup,
@@ -79,6 +95,7 @@ struct GroundScene {
 #[derive(Debug)]
 pub(super) struct TerrainLayer {
     field: wgpu::RenderPipeline,
+    mesh: wgpu::RenderPipeline,
     land: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     /// Triangles of a chunk's squares.
@@ -100,10 +117,11 @@ impl TerrainLayer {
             "ground",
             &[
                 (both, UNIFORM),
-                (ShaderStages::VERTEX, READ_STORAGE),
+                (both, READ_STORAGE),
                 (ShaderStages::VERTEX, READ_STORAGE),
                 (ShaderStages::FRAGMENT, texture),
                 (ShaderStages::FRAGMENT, sampler),
+                (ShaderStages::VERTEX, READ_STORAGE),
             ],
         );
         let field = Drawing {
@@ -115,12 +133,18 @@ impl TerrainLayer {
             samples,
             ..Drawing::default()
         };
+        let mesh = Drawing {
+            vertex: "mesh_vertex",
+            fragment: "mesh_fragment",
+            ..field
+        };
         let land = Drawing {
             vertex: "land_vertex",
             ..field
         };
         Ok(Self {
             field: field.pipeline(gpu)?,
+            mesh: mesh.pipeline(gpu)?,
             land: land.pipeline(gpu)?,
             layout,
             indices: Buffer::with(gpu, "chunk indices", &chunk_indices(), BufferUsages::INDEX)?,
@@ -135,20 +159,22 @@ impl TerrainLayer {
     pub(super) fn set_ground(
         &mut self,
         gpu: &Gpu,
-        heights: &HeightGrid,
+        field: &Field,
         colour: &GroundTexture,
         soil_rgb: [f32; 3],
         canopy: Canopy,
     ) -> Result<(), GpuError> {
-        let samples = Buffer::with(
-            gpu,
-            "ground heights",
-            &heights.heights_m,
-            BufferUsages::STORAGE,
-        )?;
-        let chunks = chunks_of(heights);
+        let heights = Arc::clone(&field.ground);
+        let storage = BufferUsages::STORAGE;
+        let samples = Buffer::with(gpu, "ground heights", &heights.heights_m, storage)?;
+        let mesh = GroundMesh::if_large(gpu, &field.bintree, canopy.height_m)?;
+        let chunks = match &mesh {
+            Some(_) => Vec::new(),
+            None => chunks_of(&heights),
+        };
+        let edge = Buffer::with(gpu, "edge heights", &edge_heights(&heights), storage)?;
         let uniform = Buffer::new(gpu, "ground", 1, BufferUsages::UNIFORM)?;
-        let records = Buffer::new(gpu, "ground chunks", chunks.len(), BufferUsages::STORAGE)?;
+        let records = Buffer::new(gpu, "ground chunks", chunks.len(), storage)?;
         let group = bind_group(
             gpu,
             "ground",
@@ -159,12 +185,15 @@ impl TerrainLayer {
                 records.binding(),
                 wgpu::BindingResource::TextureView(&colour.view),
                 wgpu::BindingResource::Sampler(&colour.sampler),
+                edge.binding(),
             ],
         );
         self.scene = Some(GroundScene {
-            ground: ground_uniform(heights, colour, soil_rgb, canopy),
-            corner_in_world: heights.corner_in_world(),
+            ground: ground_uniform(&heights, colour, soil_rgb, canopy),
+            heights,
             chunks,
+            mesh,
+            edge,
             uniform,
             records,
             group,
@@ -173,31 +202,46 @@ impl TerrainLayer {
         Ok(())
     }
 
-    /// Picks the chunks in view.
-    pub(super) fn write(&mut self, gpu: &Gpu, view: &View, aspect: f32) -> Result<(), GpuError> {
+    /// Picks what is in view.
+    ///
+    /// # Errors
+    /// A detail that cannot be kept to; the device's own.
+    pub(super) fn write(
+        &mut self,
+        gpu: &Gpu,
+        view: &View,
+        size: [u32; 2],
+        detail: TerrainDetail,
+        blades: Option<&BladesInput<'_>>,
+    ) -> Result<(), RenderError> {
         let Some(scene) = &mut self.scene else {
             return Ok(());
         };
+        let aspect = size[0] as f32 / size[1] as f32;
+        if let Some(mesh) = &mut scene.mesh {
+            let viewpoint = view.viewpoint(aspect, size[1]);
+            mesh.write(gpu, &viewpoint, detail, blades, &scene.edge)?;
+        } else {
+            scene.pick_chunks(gpu, view, aspect)?;
+        }
         let eye = view.eye_in_world;
-        let from_eye = |x: f64, z: f64| [(x - eye.x) as f32, -eye.y as f32, (z - eye.z) as f32];
-        let frustum = view.frustum(aspect);
-        let visible: Vec<Chunk> = scene
-            .chunks
-            .iter()
-            .filter(|chunk| frustum.may_see(chunk.low_in_world, chunk.high_in_world))
-            .map(|chunk| Chunk {
-                first_from_eye: from_eye(chunk.low_in_world[0], chunk.low_in_world[2]),
-                first_column: chunk.first[0],
-                first_row: chunk.first[1],
-                pad_a: 0,
-                pad_b: 0,
-                pad_c: 0,
-            })
-            .collect();
-        scene.visible = visible.len() as u32;
-        scene.records.write(gpu, 0, &visible)?;
-        scene.ground.corner_from_eye = from_eye(scene.corner_in_world[0], scene.corner_in_world[1]);
-        scene.uniform.write(gpu, 0, &[scene.ground])
+        let corner = scene.heights.corner_in_world();
+        scene.ground.corner_from_eye = level_from_eye(eye, corner);
+        let spacing_m = f64::from(scene.heights.spacing_m);
+        let sample = [
+            (eye.x - corner[0]) / spacing_m,
+            (eye.z - corner[1]) / spacing_m,
+        ];
+        // The cast of a float stops at the integer's ends, far beyond any eye.
+        scene.ground.eye_sample = sample.map(|s| s.floor() as i32);
+        let [x, z] = [0, 1].map(|a| corner[a] + f64::from(scene.ground.eye_sample[a]) * spacing_m);
+        scene.ground.eye_sample_from_eye = level_from_eye(eye, [x, z]);
+        Ok(scene.uniform.write(gpu, 0, &[scene.ground])?)
+    }
+
+    /// What the last frame's mesh is, if the field is large enough to have one.
+    pub(super) fn mesh_change(&self) -> Option<MeshChange> {
+        self.scene.as_ref()?.mesh.as_ref().map(GroundMesh::change)
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
@@ -205,13 +249,59 @@ impl TerrainLayer {
             return;
         };
         pass.set_bind_group(3, &scene.group, &[]);
-        pass.set_pipeline(&self.field);
-        pass.set_index_buffer(self.indices.raw.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..self.indices.len() as u32, 0, 0..scene.visible);
+        if let Some(mesh) = &scene.mesh {
+            pass.set_pipeline(&self.mesh);
+            mesh.draw(pass);
+        } else {
+            pass.set_pipeline(&self.field);
+            pass.set_index_buffer(self.indices.raw.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..self.indices.len() as u32, 0, 0..scene.visible);
+        }
         pass.set_pipeline(&self.land);
         let cells = scene.ground.edge_steps * (LAND_RINGS_M.len() as u32 - 1);
         pass.draw(0..6 * cells, 0..1);
     }
+}
+
+impl GroundScene {
+    fn pick_chunks(&mut self, gpu: &Gpu, view: &View, aspect: f32) -> Result<(), GpuError> {
+        let frustum = view.frustum(aspect);
+        let visible: Vec<Chunk> = self
+            .chunks
+            .iter()
+            .filter(|chunk| frustum.may_see(chunk.low_in_world, chunk.high_in_world))
+            .map(|chunk| Chunk {
+                first_from_eye: level_from_eye(
+                    view.eye_in_world,
+                    [chunk.low_in_world[0], chunk.low_in_world[2]],
+                ),
+                first_column: chunk.first[0],
+                first_row: chunk.first[1],
+                pad_a: 0,
+                pad_b: 0,
+                pad_c: 0,
+            })
+            .collect();
+        self.visible = visible.len() as u32;
+        self.records.write(gpu, 0, &visible)
+    }
+}
+
+/// A place at height 0, relative to the eye.
+fn level_from_eye(eye: Vec3<f64>, [x, z]: [f64; 2]) -> [f32; 3] {
+    [(x - eye.x) as f32, -eye.y as f32, (z - eye.z) as f32]
+}
+
+/// Heights of the samples around the field's edge, from its corner along x first: the walk of
+/// `edge_sample` in the shader.
+pub(super) fn edge_heights(heights: &HeightGrid) -> Vec<f32> {
+    let [east, south] = heights.squares();
+    let north_side = (0..east).map(|i| heights.sample(i, 0));
+    let east_side = (0..south).map(|j| heights.sample(east, j));
+    let south_side = (0..east).map(|i| heights.sample(east - i, south));
+    let west_side = (0..south).map(|j| heights.sample(0, south - j));
+    let walk = north_side.chain(east_side).chain(south_side);
+    walk.chain(west_side).collect()
 }
 
 /// Two triangles for each square of a chunk, cut as [`HeightGrid`] cuts them, seen from above
@@ -289,6 +379,10 @@ fn ground_uniform(
         pad: 0.0,
         map_m: colour.size_m,
         pad_b: [0.0; 2],
+        eye_sample_from_eye: [0.0; 3],
+        pad_c: 0.0,
+        eye_sample: [0; 2],
+        pad_d: [0; 2],
     }
 }
 

@@ -1,6 +1,7 @@
 //! The ground: one surface for the collider, the plants' roots and the picture.
 
 mod base_colour;
+pub mod bintree;
 mod build;
 mod height_grid;
 mod noise;

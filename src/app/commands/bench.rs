@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::scene_file;
+use super::{bench_terrain, scene_file};
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
 use crate::app::progress::Progress;
 use crate::run::Exit;
-use crate::run::bench::{TilesBench, bench_tiles, tiles::Row};
+use crate::run::bench::tiles::{Limit, Row};
+use crate::run::bench::{Machine, TilesBench, bench_tiles};
 
 /// Measure speed, with the error beside it
 #[derive(Args, Debug)]
@@ -23,19 +24,22 @@ pub struct Arguments {
     engine: EngineArguments,
     /// Print the results as JSON
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
     /// Also write a CSV file per adapter into this folder
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// End with exit code 1 if a promise is not kept
     #[arg(long)]
-    check: bool,
+    pub(super) check: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Bench {
     /// Cost by the number of tiles, in total and active
     Tiles,
+    /// Cost of the ground and of finding the plants in view, by the terrain's size; on the
+    /// processor alone
+    Terrain,
 }
 
 /// Scene of a million blades.
@@ -43,8 +47,14 @@ const MILLION: &str = "million_blades";
 
 /// Runs the bench and prints its tables.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
+    match arguments.what {
+        Bench::Tiles => run_tiles(arguments, out),
+        Bench::Terrain => bench_terrain::run(arguments, out),
+    }
+}
+
+fn run_tiles(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
     let device = arguments.engine.open()?;
-    let Bench::Tiles = arguments.what;
     let million = scene_file::load(Path::new(MILLION), &[])?;
     let progress = Progress::new("bench tiles");
     let bench = bench_tiles(&million, &device, |done| progress.set(done))?;
@@ -62,8 +72,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     Ok(if failed { Exit::Failed } else { Exit::Ok })
 }
 
-fn write_tables(bench: &TilesBench, out: &mut impl Write) -> io::Result<()> {
-    let machine = &bench.machine;
+pub(super) fn write_machine(machine: &Machine, out: &mut impl Write) -> io::Result<()> {
     write!(
         out,
         "{}, {} threads",
@@ -73,6 +82,23 @@ fn write_tables(bench: &TilesBench, out: &mut impl Write) -> io::Result<()> {
     if let Some(load) = machine.load_average {
         write!(out, ", load average {load:.2}")?;
     }
+    Ok(())
+}
+
+pub(super) fn write_limits(limits: &[Limit], out: &mut impl Write) -> io::Result<()> {
+    for limit in limits {
+        let verdict = if limit.kept { "ok  " } else { "MISS" };
+        writeln!(
+            out,
+            "{verdict}  {}: {:.4} of {} {}",
+            limit.what, limit.measured, limit.limit, limit.unit
+        )?;
+    }
+    Ok(())
+}
+
+fn write_tables(bench: &TilesBench, out: &mut impl Write) -> io::Result<()> {
+    write_machine(&bench.machine, out)?;
     write!(out, "\n{} engine", bench.engine)?;
     if let Some(adapter) = &bench.adapter {
         write!(out, " on {} ({})", adapter.name, adapter.driver)?;
@@ -91,15 +117,7 @@ fn write_tables(bench: &TilesBench, out: &mut impl Write) -> io::Result<()> {
         )?;
     }
     writeln!(out)?;
-    for limit in &bench.limits {
-        let verdict = if limit.kept { "ok  " } else { "MISS" };
-        writeln!(
-            out,
-            "{verdict}  {}: {:.4} of {} {}",
-            limit.what, limit.measured, limit.limit, limit.unit
-        )?;
-    }
-    Ok(())
+    write_limits(&bench.limits, out)
 }
 
 fn write_million(bench: &TilesBench, out: &mut impl Write) -> io::Result<()> {
@@ -203,7 +221,7 @@ fn write_csv(bench: &TilesBench, folder: &Path) -> Result<(), Failure> {
 }
 
 /// A name with nothing in it that a file system might refuse.
-fn file_name(name: &str) -> String {
+pub(super) fn file_name(name: &str) -> String {
     let words = name.split(|c: char| !c.is_ascii_alphanumeric());
     let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
     words.join("-").to_lowercase()

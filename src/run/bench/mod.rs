@@ -1,8 +1,11 @@
 //! Benches: speed, always with the error beside it.
 
+pub mod flight;
 pub mod machine;
 mod rig;
+pub mod terrain;
 pub mod tiles;
 
 pub use machine::Machine;
+pub use terrain::{TerrainBench, TerrainBenchError, bench_terrain};
 pub use tiles::{TilesBench, bench_tiles};
