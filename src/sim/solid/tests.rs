@@ -101,3 +101,26 @@ fn a_face_is_kept_until_another_is_a_tenth_nearer() {
     assert_eq!(face(0.51, 2), Some(2));
     assert_eq!(face(0.56, 2), Some(0));
 }
+
+#[test]
+fn a_node_laid_into_a_body_goes_back_where_it_came_in() {
+    let plate = Solid::Box {
+        half: vec3(0.005, 0.25, 0.3),
+    };
+    let p = vec3(-0.003, 0.0, 0.0);
+    let face = |before: Vec3<f64>, length: f64| {
+        let from = vec3(before.x * 3.0, -0.02, 0.0);
+        let reach = Reach {
+            from,
+            length,
+            before,
+        };
+        plate.exit(p, NO_FACE, &reach).map(|e| e.face)
+    };
+    assert_eq!(face(vec3(0.006, 0.01, 0.0), 0.05), Some(0), "in front");
+    assert_eq!(face(vec3(-0.006, 0.01, 0.0), 0.05), Some(1), "behind");
+    assert_eq!(face(vec3(0.001, 0.01, 0.0), 0.05), Some(1), "inside before");
+    // Its own side is out of the segment's reach.
+    assert_eq!(face(vec3(-0.02, 0.01, 0.0), 0.066), Some(1));
+    assert_eq!(face(vec3(0.02, 0.01, 0.0), 0.054), Some(1));
+}
