@@ -35,6 +35,20 @@ fn json(output: &Output) -> serde_json::Value {
     serde_json::from_slice(&output.stdout).expect("stdout is one JSON value")
 }
 
+/// Its sub-steps are shorter than the scene's; the run is not.
+#[test]
+fn the_reference_engine_runs_the_whole_scene() {
+    let path = scene("still_reference.ron", STILL);
+    let output = sward(&["run", &path, "--engine", "reference", "--json"]);
+    assert_eq!(code(&output), 0);
+    let report = json(&output);
+    let run = &report["scenarios"][0];
+    assert_eq!(report["engine"], "reference");
+    assert_eq!(run["passed"], true);
+    let simulated_s = run["seconds_simulated"].as_f64().expect("a number");
+    assert!((simulated_s - 0.1).abs() < 1e-9, "{simulated_s}");
+}
+
 #[test]
 fn usage_errors_are_2_and_help_is_0() {
     for wrong in [

@@ -232,8 +232,8 @@ pub fn run_watched(
     let substep_s = scene.solver.substep_s;
     // A millionth of a sub-step forgives the rounding of the division.
     let scene_ticks = || (scene.duration_s / substep_s + 1e-6) as u32;
-    let ticks = options.ticks.unwrap_or_else(scene_ticks);
-    let as_written = ticks == scene_ticks() && !options.changes_the_run();
+    let whole = options.ticks.is_none_or(|ticks| ticks == scene_ticks());
+    let as_written = whole && !options.changes_the_run();
     let duration_s = match options.ticks {
         Some(ticks) => f64::from(ticks) * substep_s,
         None => scene.duration_s,
@@ -242,6 +242,9 @@ pub fn run_watched(
     let mut meadow =
         Meadow::new(scene, &loaded.assets).map_err(|error| RunError::new(name, error))?;
     let mut engine = (device.engine(&mut meadow)).map_err(|error| RunError::new(name, error))?;
+    // The reference engine has given the meadow shorter sub-steps.
+    let engine_ticks = || (duration_s / meadow.scene.solver.substep_s + 1e-6) as u32;
+    let ticks = options.ticks.unwrap_or_else(engine_ticks);
     let mut judges: Vec<Judge> = meadow
         .scene
         .expect

@@ -18,7 +18,8 @@
 //! [`Sampling`] and [`Push`] select masked and plain bilinear depths, nearest texels and |d| where a comparison needs
 //! them (in the cpu engine alone).
 //!
-//! Limits: the silhouette is known to half a texel, so a point may stay inside by up to a texel.
+//! Limits: an edge between two faces is rounded off by up to a texel, which is as far as a point may
+//! stay inside; other samplings know the silhouette to half a texel.
 //! WGSL twin: `shaders/depth_cube.wgsl` (drawing), `shaders/shared/cube.wgsl` (sampling).
 
 mod draw;

@@ -88,19 +88,22 @@ fn travel_m(link: &Link, radius_m: f64) -> f64 {
 
 /// A link's motion as the grass meets it. One that was put somewhere is let down on the grass from
 /// above: which way a blade leaves a body that is suddenly around it would hang on millimetres.
-/// It starts as high over its place as plants are tall, or as its sweeps can cover. Not let down are
-/// a body that goes farther than that in its first sub-step, which has come from aside, and one of
-/// several parts, which would sweep what its hollows leave alone.
-fn let_down(link: &Link, shape: &RigidShape, solver: &Solver, tallest_m: f64) -> Link {
+/// It starts as high over its place as plants are tall, or [`LIFT`] of its half thickness, which
+/// sweeps can cover. Not let down are a body that goes farther than that in its first sub-step, which
+/// has come from aside, and one of several parts, which would sweep what its hollows leave alone.
+fn let_down(link: &Link, shape: &RigidShape, tallest_m: f64) -> Link {
     let mut link = link.clone();
-    let reachable_m = 0.5 * f64::from(solver.max_sweeps) * sweep_m(shape, solver);
-    let lift_m = tallest_m.min(reachable_m);
+    let lift_m = tallest_m.min(LIFT * shape.half_thickness_m);
     let convex = shape.parts.len() == 1;
     if link.placed && convex && travel_m(&link, shape.bounding_radius_m) <= lift_m {
         link.from.place.y += lift_m;
     }
     link
 }
+
+/// Highest a body is let down from, over its half thickness: 512 sweeps of the default's share, half
+/// of those it may take. The same for every method, so that all meet the same motion.
+const LIFT: f64 = 32.0;
 
 /// Longest way of a body in one sweep, in metres.
 fn sweep_m(shape: &RigidShape, solver: &Solver) -> f64 {
@@ -116,7 +119,7 @@ impl Mover {
         solver: &Solver,
         tallest_m: f64,
     ) -> Self {
-        let link = let_down(link, shape, solver, tallest_m);
+        let link = let_down(link, shape, tallest_m);
         let skin = f64::from(solver.skin_m);
         let bounds_at = |pose: Pose<f64>| {
             let boxes = shape

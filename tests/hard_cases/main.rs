@@ -3,9 +3,6 @@
 //! and with closed forms. Without an adapter the gpu trials are ignored, unless
 //! `SWARD_REQUIRE_GPU=1`. Every trial prints what it measured.
 //!
-//! A case whose limit is not met is ignored and named with what was measured, and never counts as
-//! passed: `cargo test --release --test hard_cases -- --ignored` runs those too.
-//!
 //! The long run of 24 simulated hours is not part of the test run:
 //! `cargo test --release --test hard_cases -- --ignored day`.
 
