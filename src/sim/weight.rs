@@ -10,7 +10,7 @@
 //! ```
 //!
 //! is the least squares over the segments. Where angles are blended instead, s is the angle of a
-//! segment from the wind pose over the angle at which it was held, again in least squares.
+//! segment from the wind pose over that of w_j + d_j, again in least squares.
 
 use crate::base::Vec3;
 use crate::scene::method::Recovery;
@@ -49,7 +49,8 @@ pub fn offset_weight(held: Bend<'_>, now: Bend<'_>, recovery: Recovery) -> Optio
         let square = wind.length_squared();
         lengths += square;
         if recovery == Recovery::Angles {
-            let [from, to] = [angle_rad(held_wind, bent), angle_rad(wind, along)];
+            let whole = wind + (bent - held_wind);
+            let [from, to] = [angle_rad(wind, whole), angle_rad(wind, along)];
             products += square * from * to;
             squares += square * from * from;
         } else {
@@ -134,12 +135,17 @@ mod tests {
     fn wind_that_turned_since_changes_nothing() {
         let (then, now, held) = (blade(0.05), blade(-0.03), blade(0.25));
         let offsets = offsets(&then, &held);
-        for age in [10, 100, 200] {
-            let nodes = recovering_pose(&now, &offsets, age, &fading(Recovery::Lengths), LENGTH_M);
-            let [held, seen] = [bend(&then, &held), bend(&now, &nodes)];
-            let found = offset_weight(held, seen, Recovery::Lengths).expect("a bent blade");
-            let left: f64 = offset_left(age, STEP_OVER_T);
-            assert!((found - left).abs() < 1e-13, "{age}: {found} for {left}");
+        for recovery in [Recovery::Lengths, Recovery::Angles] {
+            for age in [10, 100, 200] {
+                let nodes = recovering_pose(&now, &offsets, age, &fading(recovery), LENGTH_M);
+                let [held, seen] = [bend(&then, &held), bend(&now, &nodes)];
+                let found = offset_weight(held, seen, recovery).expect("a bent blade");
+                let left: f64 = offset_left(age, STEP_OVER_T);
+                assert!(
+                    (found - left).abs() < 1e-13,
+                    "{recovery:?} {age}: {found} for {left}"
+                );
+            }
         }
     }
 
