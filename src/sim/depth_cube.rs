@@ -15,8 +15,8 @@
 //! - a texel whose surface point lies inside a neighbouring part of the same body is *hidden*: it
 //!   tells inside from outside, but no way out leads through it.
 //!
-//! [`Sampling`] and [`Push`] select masked and plain bilinear depths, nearest texels and |d| where a comparison needs
-//! them (in the cpu engine alone).
+//! [`Sampling`] and [`Push`] select masked and plain bilinear depths, nearest texels and |d| where a
+//! comparison needs them (in the cpu engine alone).
 //!
 //! Limits: an edge between two faces is rounded off by up to a texel, which is as far as a point may
 //! stay inside; other samplings know the silhouette to half a texel.

@@ -105,11 +105,6 @@ fn let_down(link: &Link, shape: &RigidShape, tallest_m: f64) -> Link {
 /// of those it may take. The same for every method, so that all meet the same motion.
 const LIFT: f64 = 32.0;
 
-/// Longest way of a body in one sweep, in metres.
-fn sweep_m(shape: &RigidShape, solver: &Solver) -> f64 {
-    solver.method.sweep_share * shape.half_thickness_m
-}
-
 impl Mover {
     /// `tallest_m` is the length of the longest blade, in metres.
     pub fn new(
@@ -132,7 +127,8 @@ impl Mover {
             })
         };
         let swept = bounds_at(link.from).union(bounds_at(link.to));
-        let wished = (travel_m(&link, shape.bounding_radius_m) / sweep_m(shape, solver))
+        let step = solver.method.sweep_share * shape.half_thickness_m;
+        let wished = (travel_m(&link, shape.bounding_radius_m) / step)
             .ceil()
             .max(1.0);
         Self {

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 
 use super::{bench_terrain, scene_file};
 use crate::app::Failure;
@@ -59,16 +60,29 @@ fn run_tiles(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failur
     let progress = Progress::new("bench tiles");
     let bench = bench_tiles(&million, &device, |done| progress.set(done))?;
     drop(progress);
+    let kept = bench.all_kept();
+    tell(arguments, &bench, kept, out, write_csv, write_tables)
+}
+
+/// Files a bench where that is asked for and prints it. `kept` says whether it is within its limits.
+pub(super) fn tell<B: Serialize, W: Write>(
+    arguments: &Arguments,
+    bench: &B,
+    kept: bool,
+    out: &mut W,
+    write_csv: impl FnOnce(&B, &Path) -> Result<(), Failure>,
+    write_tables: impl FnOnce(&B, &mut W) -> io::Result<()>,
+) -> Result<Exit, Failure> {
     if let Some(folder) = &arguments.out {
-        write_csv(&bench, folder)?;
+        write_csv(bench, folder)?;
     }
     if arguments.json {
-        serde_json::to_writer_pretty(&mut *out, &bench)?;
+        serde_json::to_writer_pretty(&mut *out, bench)?;
         writeln!(out)?;
     } else {
-        write_tables(&bench, out)?;
+        write_tables(bench, out)?;
     }
-    let failed = arguments.check && !bench.all_kept();
+    let failed = arguments.check && !kept;
     Ok(if failed { Exit::Failed } else { Exit::Ok })
 }
 

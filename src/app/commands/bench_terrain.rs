@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::bench::{Arguments, file_name, write_limits, write_machine};
+use super::bench::{Arguments, file_name, tell, write_limits, write_machine};
 use crate::app::Failure;
 use crate::app::progress::Progress;
 use crate::run::Exit;
@@ -16,17 +16,8 @@ pub(super) fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, F
     let progress = Progress::new("bench terrain");
     let bench = bench_terrain(|done| progress.set(done))?;
     drop(progress);
-    if let Some(folder) = &arguments.out {
-        write_csv(&bench, folder)?;
-    }
-    if arguments.json {
-        serde_json::to_writer_pretty(&mut *out, &bench)?;
-        writeln!(out)?;
-    } else {
-        write_tables(&bench, out)?;
-    }
-    let failed = arguments.check && !bench.all_kept();
-    Ok(if failed { Exit::Failed } else { Exit::Ok })
+    let kept = bench.all_kept();
+    tell(arguments, &bench, kept, out, write_csv, write_tables)
 }
 
 fn write_tables(bench: &TerrainBench, out: &mut impl Write) -> io::Result<()> {
