@@ -2,7 +2,8 @@
 //
 // One invocation per plant of a colliding tile (workgroup y is the tile). The nodes are met while
 // walking up the plant, so none are stored; a plant counts as touched if any node is inside any part
-// in any sweep, whatever the order.
+// in any sweep, whatever the order. One that an earlier turn has listed is marked with the tick in y
+// of its state's first row.
 #import "shared/contact.wgsl"
 #import "shared/ground.wgsl"
 #import "shared/plant.wgsl"
@@ -13,15 +14,17 @@
 #import "shared/touched.wgsl"
 
 @group(1) @binding(1) var<storage, read> tiles: array<TileRecord>;
-@group(1) @binding(3) var<storage, read> state: array<vec4u>;
+@group(1) @binding(3) var<storage, read_write> state: array<vec4u>;
 
-// True where a node is inside a part that reaches the plant, in any sweep.
-fn node_touched(tile: TileRecord, plant: Plant, node: vec3f, sweeps: u32) -> bool {
+// True where a node is inside a part that reaches the plant, in any sweep of this turn, which comes
+// after `done` ones.
+fn node_touched(tile: TileRecord, plant: Plant, node: vec3f, done: u32, sweeps: u32) -> bool {
+    let last = min(done + tick.collide_sweeps, sweeps);
     for (var contact = tile.first_contact; contact < tile.end_contact; contact++) {
         if !reaches(contact, plant.root, plant.height_m) {
             continue;
         }
-        for (var sweep = 1u; sweep <= sweeps; sweep++) {
+        for (var sweep = done + 1u; sweep <= last; sweep++) {
             if holds(contact, pose_at(contact, f32(sweep) / f32(sweeps)), node) {
                 return true;
             }
@@ -60,23 +63,33 @@ fn collide(
         return;
     }
     let sweeps = sweeps_for(tile, plant.root, plant.height_m);
-    if sweeps == 0u {
+    let done = turn() * tick.collide_sweeps;
+    if done >= sweeps {
         return;
     }
     let row = plant_row(tile.slab, place);
+    if done > 0u && state[row].y == tick.now {
+        return;
+    }
     var walk = walk_before(tile, plant, state[row].x);
     var held = false;
+    var met = 0u;
     for (var j = 0u; j < field.segments; j++) {
         walk_up(&walk, plant, j, bitcast<vec3f>(state[row + 1u + j].xyz));
         let free = !walk.before || !is_pinned(tile, walk.node);
-        if free && node_touched(tile, plant, walk.node, sweeps) {
+        if free && node_touched(tile, plant, walk.node, done, sweeps) {
+            state[row].y = tick.now;
             add_touched(Touched(group.y, place, sweeps));
             return;
         }
         held = held || (walk.before && node_held(tile, plant, walk.node));
+        met++;
+    }
+    if met < field.segments {
+        add_cut_short();
     }
     // Held where it was pushed before: it keeps its pose and does not recover yet.
-    if held {
+    if held && done + tick.collide_sweeps >= sweeps {
         add_touched(Touched(group.y, place, 0u));
     }
 }

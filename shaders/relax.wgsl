@@ -1,6 +1,7 @@
 // Relax: what a touched plant does within one sub-step. Twin: src/sim/relax.rs.
 //
-// One invocation per touched plant, sweeps and rounds in sequence, so no two write the same place.
+// One invocation per touched plant, sweeps and rounds in sequence, so no two write the same place. A
+// later turn goes on from the offsets that the one before has left.
 // Pushing out and laying out ask the bodies at one place only, in `meet_bodies`: software drivers
 // pay for every inlined copy of that.
 #import "shared/contact.wgsl"
@@ -201,10 +202,10 @@ fn largest_strain(rest: f32) -> f32 {
     return worst;
 }
 
-// Runs one sub-step; returns the largest number of rounds a sweep took.
-fn respond(tile: TileRecord, reach: f32, sweeps: u32, length: f32) -> u32 {
+// Runs the sweeps of this turn, after `done` ones; returns the largest number of rounds one took.
+fn respond(tile: TileRecord, reach: f32, done: u32, sweeps: u32, length: f32) -> u32 {
     var rounds_used = 0u;
-    for (var sweep = 1u; sweep <= sweeps; sweep++) {
+    for (var sweep = done + 1u; sweep <= min(done + tick.relax_sweeps, sweeps); sweep++) {
         let share = f32(sweep) / f32(sweeps);
         var pushed = 0u;
         // Round 0 is the first push, which decides whether any round follows.
@@ -241,6 +242,10 @@ fn relax(
         return;
     }
     let entry = touched_at(index);
+    let done = turn() * tick.relax_sweeps;
+    if done > 0u && done >= entry.sweeps {
+        return;
+    }
     let tile = tiles[entry.tile];
     let plant = plant_at(tile, entry.place);
     let row = plant_row(tile.slab, entry.place);
@@ -256,11 +261,17 @@ fn relax(
         wind_nodes[j + 1u] = walk.wind;
         faces[j] = select(stored.w, 0u, is_back);
     }
-    let rounds = respond(tile, plant.height_m, entry.sweeps, walk.length);
+    let rounds = respond(tile, plant.height_m, done, entry.sweeps, walk.length);
     atomicMax(&touched[1], rounds);
+    var stored = 0u;
     for (var j = 0u; j < field.segments; j++) {
         let offset = nodes[j + 1u] - wind_nodes[j + 1u];
         state[row + 1u + j] = vec4u(bitcast<vec3u>(offset), faces[j]);
+        stored++;
+    }
+    // Once a driver's limit is reached every loop ends after its first round, this one too.
+    if stored < field.segments {
+        add_cut_short();
     }
     state[row] = vec4u(tick.now, 0u, 0u, 0u);
 }

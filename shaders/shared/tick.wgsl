@@ -15,6 +15,10 @@ struct TickUniform {
     // 2κΔt of the bend springs over the whole sub-step.
     bend: f32,
     strain_limit: f32,
+    // Most sweeps in a turn of either pass.
+    collide_sweeps: u32,
+    relax_sweeps: u32,
+    spare: vec2u,
     // The wind at the start of the sub-step.
     wind_before: WindUniform,
 }

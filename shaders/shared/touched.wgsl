@@ -1,5 +1,6 @@
-// The list of touched plants: TOUCHED_HEADER words (their count, the most rounds any plant took,
-// two spare), then two words per plant. Host: src/gpu/grass.rs.
+// The list of touched plants: TOUCHED_HEADER words (their count, the most rounds any plant took, the
+// turn of the pass, how often loops were cut short), then two words per plant.
+// Host: src/gpu/grass_buffers.rs.
 @group(1) @binding(4) var<storage, read_write> touched: array<atomic<u32>>;
 
 // A plant to respond: rank of its tile's record, place in the tile, sweeps it needs (0 if
@@ -8,6 +9,16 @@ struct Touched {
     tile: u32,
     place: u32,
     sweeps: u32,
+}
+
+// The turn of the pass, from 0.
+fn turn() -> u32 {
+    return atomicLoad(&touched[2]);
+}
+
+// Counts an invocation whose loops the driver has ended early: see src/gpu/turns.rs.
+fn add_cut_short() {
+    atomicAdd(&touched[3], 1u);
 }
 
 fn add_touched(plant: Touched) {

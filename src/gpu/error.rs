@@ -29,6 +29,16 @@ pub enum GpuError {
     )]
     UnknownMethod { asked: String },
 
+    #[error(
+        "the driver of adapter '{adapter}' has ended loops of {count} kernels early, so that their \
+         plants are wrong: give solver.max_sweeps less than {sweeps}, or take --engine cpu"
+    )]
+    CutShort {
+        adapter: String,
+        count: u32,
+        sweeps: u32,
+    },
+
     #[error("the graphics device was lost: {reason}; make a new device to go on")]
     Lost { reason: String },
 

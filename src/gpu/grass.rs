@@ -14,13 +14,18 @@ use super::passes::collide::CollidePass;
 use super::passes::depth_cube::DepthCubePass;
 use super::passes::recover::RecoverPass;
 use super::passes::relax::RelaxPass;
+use super::passes::turns::TurnsPass;
 use super::passes::{Recording, WORKGROUP};
 use super::tick_data::{ContactRecord, TickUniform};
+use super::turns::PassTurns;
 use super::{Buffer, FieldBuffers, Gpu, GpuError, PassTimer};
 use crate::scene::Method;
 use crate::scene::method::Collide;
 use crate::sim::Meadow;
 use crate::sim::slab::slab_bytes;
+
+/// Dispatches of a tick that are timed: those of a scene with hundreds of sweeps in a sub-step.
+const MOST_TIMED: usize = 256;
 
 /// Every pass, compiled.
 #[derive(Clone, Debug)]
@@ -30,6 +35,7 @@ pub struct GrassKernels {
     collide: CollidePass,
     relax: RelaxPass,
     recover: RecoverPass,
+    turns: TurnsPass,
     workgroup: u32,
 }
 
@@ -51,6 +57,7 @@ impl GrassKernels {
             collide: CollidePass::new(gpu, workgroup)?,
             relax: RelaxPass::new(gpu, workgroup)?,
             recover: RecoverPass::new(gpu, workgroup)?,
+            turns: TurnsPass::new(gpu)?,
             workgroup,
         })
     }
@@ -101,6 +108,8 @@ pub struct GpuGrass {
     /// Tiles of the current tick, and how many of them collide.
     active: u32,
     colliding: u32,
+    /// Turns of the current tick's passes.
+    pub(super) turns: PassTurns,
     pub dispatches: Dispatches,
     pub timer: PassTimer,
 }
@@ -130,8 +139,9 @@ impl GpuGrass {
             slab_rows: bytes as usize / size_of::<[u32; 4]>(),
             active: 0,
             colliding: 0,
+            turns: PassTurns::new(meadow),
             dispatches: Dispatches::default(),
-            timer: PassTimer::new(gpu, 8),
+            timer: PassTimer::new(gpu, MOST_TIMED),
         };
         grass.field.set_wind(gpu, &meadow.work.wind)?;
         Ok(grass)
@@ -195,8 +205,10 @@ impl GpuGrass {
             &mut recording,
             &self.buffers,
             &self.cubes.buffers,
+            &self.kernels.turns,
+            self.turns.collide,
         );
-        self.dispatches.collide += 1;
+        self.dispatches.collide += u64::from(self.turns.collide.count);
         Ok(())
     }
 
@@ -215,8 +227,10 @@ impl GpuGrass {
             &mut recording,
             &self.buffers,
             &self.cubes.buffers,
+            &self.kernels.turns,
+            self.turns.relax,
         );
-        self.dispatches.relax += 1;
+        self.dispatches.relax += u64::from(self.turns.relax.count);
     }
 
     /// Hands what was recorded to the device.
@@ -279,7 +293,8 @@ impl GpuGrass {
         self.active = tiles.len() as u32;
         self.colliding = all().filter(collides).count() as u32;
 
-        let tick = TickUniform::new(meadow, self.colliding);
+        self.turns = PassTurns::new(meadow);
+        let tick = TickUniform::new(meadow, self.colliding, self.turns);
         buffers.tick.write(gpu, 0, &[tick])?;
         buffers.tiles.write_or_grow(gpu, &tiles)?;
         self.field.set_wind(gpu, &meadow.work.wind)?;

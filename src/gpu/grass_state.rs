@@ -28,14 +28,24 @@ pub struct Counts {
     pub touched: u32,
     /// Most rounds any plant took since the start.
     pub rounds_peak: u32,
+    /// Kernels whose loops the driver has ended early since the start: what they computed is wrong.
+    pub cut_short: u32,
 }
 
 impl GpuGrass {
     /// Reads the slabs of the meadow's active tiles. Waits for the device.
     ///
     /// # Errors
-    /// The device's.
+    /// The device's; kernels that the driver did not let finish.
     pub fn read_state(&self, meadow: &Meadow) -> Result<GpuState, GpuError> {
+        let count = self.read_counts()?.cut_short;
+        if count > 0 {
+            return Err(GpuError::CutShort {
+                adapter: self.gpu.adapter.name.clone(),
+                count,
+                sweeps: self.turns.relax.sweeps,
+            });
+        }
         let slabs: Vec<u32> = meadow.work.tiles.iter().map(|tile| tile.slab).collect();
         let rows = read_slabs(self, &self.buffers.state, &slabs)?;
         let plants = meadow.field.grid.plants_per_tile() as usize;
@@ -72,6 +82,7 @@ impl GpuGrass {
         Ok(Counts {
             touched: header.first().copied().unwrap_or(0),
             rounds_peak: header.get(1).copied().unwrap_or(0),
+            cut_short: header.get(3).copied().unwrap_or(0),
         })
     }
 

@@ -18,6 +18,7 @@ pub mod passes;
 mod tick;
 pub mod tick_data;
 mod timing;
+pub mod turns;
 pub mod wgsl;
 
 pub(crate) use buffer::read_mapped;

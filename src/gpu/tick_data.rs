@@ -2,6 +2,7 @@
 //! `contact.wgsl`, `solid.wgsl`, and `shaders/depth_cube.wgsl` for parts and jobs.
 
 use super::field_data::WindUniform;
+use super::turns::PassTurns;
 use crate::base::{Pose, Vec3};
 use crate::gpu_struct;
 use crate::scene::Solver;
@@ -29,6 +30,9 @@ gpu_struct! {
         pub step_over_t: f32,
         pub bend: f32,
         pub strain_limit: f32,
+        pub collide_sweeps: u32,
+        pub relax_sweeps: u32,
+        pub spare: [u32; 2],
         pub wind_before: WindUniform,
     }
 }
@@ -88,8 +92,9 @@ gpu_struct! {
 }
 
 impl TickUniform {
-    /// Numbers of the meadow's current sub-step, of which `colliding` tiles collide.
-    pub fn new(meadow: &Meadow, colliding: u32) -> Self {
+    /// Numbers of the meadow's current sub-step, of which `colliding` tiles collide, and whose
+    /// passes run in the given turns.
+    pub fn new(meadow: &Meadow, colliding: u32, turns: PassTurns) -> Self {
         let solver: &Solver = &meadow.scene.solver;
         let settings = RelaxSettings::<f32>::new(solver);
         Self {
@@ -101,6 +106,9 @@ impl TickUniform {
             step_over_t: meadow.step_over_t() as f32,
             bend: settings.bend,
             strain_limit: settings.strain_limit,
+            collide_sweeps: turns.collide.sweeps,
+            relax_sweeps: turns.relax.sweeps,
+            spare: [0; 2],
             wind_before: (&meadow.work.wind_before).into(),
         }
     }

@@ -175,6 +175,7 @@ pub const PASSES: &[WgslFile] = &[
         STICKS,
         WORKGROUP,
     ),
+    wgsl_file!("turns.wgsl"),
 ];
 
 /// Why a shader could not be put together.

@@ -247,7 +247,7 @@ impl<R: Real> Solid<R> {
     }
 
     /// Features of a convex solid that a way out may lead through.
-    fn feature_count(&self) -> u32 {
+    pub(crate) fn feature_count(&self) -> u32 {
         match self {
             Self::Ball { .. } | Self::Capsule { .. } => 1,
             Self::Box { .. } => 6,

@@ -2,9 +2,11 @@
 //! plants; tiles that do not collide are not dispatched.
 //! Shader: `shaders/collide.wgsl`; twin: `src/sim/collide.rs`.
 
+use super::turns::TurnsPass;
 use super::{Access, Groups, Kernel, Recording};
 use crate::gpu::cubes::CubeBuffers;
 use crate::gpu::grass_buffers::{COLLIDE_GROUPS, GrassBuffers};
+use crate::gpu::turns::Turns;
 use crate::gpu::{Gpu, GpuError};
 
 /// The pass that lists touched plants.
@@ -21,7 +23,7 @@ impl CollidePass {
             (0, Access::Uniform),
             (1, Access::Read),
             (2, Access::Read),
-            (3, Access::Read),
+            (3, Access::Write),
             (4, Access::Write),
             (5, Access::Read),
             (6, Access::Read),
@@ -30,13 +32,15 @@ impl CollidePass {
         Ok(Self { collide })
     }
 
-    /// Empties the list of touched plants and fills it anew.
+    /// Empties the list of touched plants and fills it anew, in as many turns as it takes.
     pub fn record(
         &self,
         gpu: &Gpu,
         into: &mut Recording<'_>,
         grass: &GrassBuffers,
         cubes: &CubeBuffers,
+        turns: &TurnsPass,
+        count: Turns,
     ) {
         into.encoder.clear_buffer(&grass.touched.raw, 0, Some(4));
         let bound = self.collide.bind(
@@ -52,6 +56,8 @@ impl CollidePass {
             ],
         );
         let groups = Groups::Indirect(&grass.groups, COLLIDE_GROUPS);
-        self.collide.record(into, &bound, groups);
+        turns.record(gpu, into, grass, count, |into| {
+            self.collide.record(into, &bound, groups);
+        });
     }
 }

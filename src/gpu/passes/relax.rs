@@ -2,9 +2,11 @@
 //! number never visits the CPU.
 //! Shader: `shaders/relax.wgsl`; twin: `src/sim/relax.rs`.
 
+use super::turns::TurnsPass;
 use super::{Access, Groups, Kernel, Recording};
 use crate::gpu::cubes::CubeBuffers;
 use crate::gpu::grass_buffers::{GrassBuffers, RELAX_GROUPS};
+use crate::gpu::turns::Turns;
 use crate::gpu::{Gpu, GpuError};
 
 /// The pass that pushes touched plants out and restores their shape.
@@ -34,13 +36,15 @@ impl RelaxPass {
         })
     }
 
-    /// Responds every plant in the list of touched ones.
+    /// Responds every plant in the list of touched ones, in as many turns as it takes.
     pub fn record(
         &self,
         gpu: &Gpu,
         into: &mut Recording<'_>,
         grass: &GrassBuffers,
         cubes: &CubeBuffers,
+        turns: &TurnsPass,
+        count: Turns,
     ) {
         let counted = self
             .count_groups
@@ -60,6 +64,8 @@ impl RelaxPass {
             ],
         );
         let groups = Groups::Indirect(&grass.groups, RELAX_GROUPS);
-        self.relax.record(into, &bound, groups);
+        turns.record(gpu, into, grass, count, |into| {
+            self.relax.record(into, &bound, groups);
+        });
     }
 }

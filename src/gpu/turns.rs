@@ -1,0 +1,101 @@
+//! How many sweeps of a sub-step one dispatch runs; the rest are left to the next ones.
+//!
+//! A body that is fast, thin or let down from above takes hundreds of sweeps. Software drivers end
+//! long loops without a word: llvmpipe stops all loops of an invocation once they have gone round
+//! 65,535 times together. Hardware drivers take the device away from a dispatch that runs for
+//! seconds. So collide and relax run in turns of as many sweeps as stay below that, counted with
+//! the most rounds. Kernels that find their loops cut short all the same say so:
+//! [`Counts::cut_short`](super::grass_state::Counts::cut_short).
+
+use crate::sim::Meadow;
+use crate::sim::parts::Tested;
+use crate::sim::work::{Contact, TileWork};
+
+/// Most times that all loops of a dispatch together go round; what is left to the driver's limit is
+/// for the loops before and after the sweeps.
+const MOST_LOOPS: u64 = 60_000;
+/// Loops of a depth cube's test: six faces, and four texels for each.
+const CUBE_LOOPS: u64 = 6 * (1 + 4);
+/// Loops over the segments in a round of relax, besides those that meet bodies.
+const LOOPS_OVER_SEGMENTS: u64 = 4;
+
+/// Dispatches of one pass in a sub-step.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Turns {
+    /// Sweeps of each, the last one excepted, which has what is left.
+    pub sweeps: u32,
+    pub count: u32,
+}
+
+/// Turns of the passes of a sub-step.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct PassTurns {
+    pub collide: Turns,
+    pub relax: Turns,
+}
+
+impl PassTurns {
+    /// Those of the meadow's current sub-step.
+    pub fn new(meadow: &Meadow) -> Self {
+        let solver = &meadow.scene.solver;
+        let (sweeps, per_node) = (most_sweeps(meadow), loops_per_node(meadow));
+        let segments = u64::from(solver.segments);
+        let rounds = u64::from(solver.rounds[1]) + 1;
+        Self {
+            collide: Turns::new(sweeps, segments * per_node),
+            relax: Turns::new(sweeps, rounds * segments * (per_node + LOOPS_OVER_SEGMENTS)),
+        }
+    }
+}
+
+impl Turns {
+    /// Turns for `sweeps` sweeps that take `loops` loops each.
+    fn new(sweeps: u32, loops: u64) -> Self {
+        let sweeps = sweeps.max(1);
+        let at_once = (MOST_LOOPS / loops.max(1)).clamp(1, u64::from(sweeps)) as u32;
+        Self {
+            sweeps: at_once,
+            count: sweeps.div_ceil(at_once),
+        }
+    }
+}
+
+fn most_sweeps(meadow: &Meadow) -> u32 {
+    let contacts = meadow.work.contacts.iter();
+    contacts.map(|contact| contact.sweeps).max().unwrap_or(0)
+}
+
+/// Loops that a node takes to meet every part near its tile once, where they are most.
+fn loops_per_node(meadow: &Meadow) -> u64 {
+    let of_part = |contact: &Contact| match contact.tested {
+        Tested::Cube => 1 + CUBE_LOOPS,
+        _ => {
+            let part = &meadow.parts.parts[contact.part as usize];
+            1 + u64::from(part.grown.feature_count())
+        }
+    };
+    let contacts_of = |tile: &TileWork| tile.contacts.start as usize..tile.contacts.end as usize;
+    let tiles = meadow.work.tiles.iter();
+    let sums = tiles.map(|tile| {
+        let contacts = &meadow.work.contacts[contacts_of(tile)];
+        contacts.iter().map(of_part).sum()
+    });
+    sums.max().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_cover_every_sweep_and_stay_below_the_limit() {
+        for (sweeps, loops) in [(0, 0), (1, 10), (1024, 616), (1024, 60_000), (7, 90_000)] {
+            let turns = Turns::new(sweeps, loops);
+            let covered = u64::from(turns.sweeps) * u64::from(turns.count);
+            assert!(covered >= u64::from(sweeps.max(1)), "{turns:?}");
+            assert!(covered - u64::from(turns.sweeps) < u64::from(sweeps.max(1)));
+            let at_once = u64::from(turns.sweeps) * loops;
+            assert!(at_once <= MOST_LOOPS || turns.sweeps == 1, "{turns:?}");
+        }
+    }
+}
