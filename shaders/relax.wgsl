@@ -29,14 +29,20 @@ fn rest_direction(j: u32) -> vec3f {
     return unit_or(wind_nodes[j + 1u] - wind_nodes[j], UP);
 }
 
+fn plane_below(tile: TileRecord, node: vec3f) -> GroundPlane {
+    return ground_plane_in_anchor(tile, node.x, node.z);
+}
+
 fn ground_below(tile: TileRecord, node: vec3f) -> f32 {
     return ground_in_anchor(tile, node.x, node.z);
 }
 
-// True for a node that a body presses onto the ground: its way out leads below it, and down rather
-// than sideways.
+// True for a node that a body presses onto the ground: its way out leads below it, and into it
+// rather than along.
 fn is_pressed(tile: TileRecord, out: vec3f, normal: vec3f) -> bool {
-    return normal.y < -STICKS && out.y < ground_below(tile, out);
+    let plane = ground_plane_in_anchor(tile, out.x, out.z);
+    let into = dot(plane.slope, normal.xz) - normal.y;
+    return into > STICKS * sqrt(1.0 + dot(plane.slope, plane.slope)) && out.y < plane.height;
 }
 
 fn is_on_ground(tile: TileRecord, node: vec3f) -> bool {
@@ -45,23 +51,29 @@ fn is_on_ground(tile: TileRecord, node: vec3f) -> bool {
 
 // Turns segment j about its lower node until its upper one is on the ground, if it is below.
 fn lay_on_ground(tile: TileRecord, length: f32, j: u32) {
-    let height = ground_below(tile, nodes[j + 1u]);
-    if nodes[j + 1u].y < height {
-        turn_to(length, j, height);
+    let plane = plane_below(tile, nodes[j + 1u]);
+    if nodes[j + 1u].y < plane.height {
+        turn_to(length, j, plane);
     }
 }
 
-// Turns segment j about its lower node until its upper one is at a height, as far as its length
-// allows.
-fn turn_to(length: f32, j: u32, height: f32) {
-    let start = nodes[j];
-    let to = nodes[j + 1u];
-    let rise = clamp(height - start.y, -length, length);
-    let run = sqrt(max(length * length - rise * rise, 0.0));
+// Turns segment j about its lower node, up or down, until its upper one is on the plane of the
+// ground below it, as far as its length allows.
+fn turn_to(length: f32, j: u32, plane: GroundPlane) {
     let rest = rest_direction(j);
     let sideways = unit_or(vec3f(rest.x, 0.0, rest.z), vec3f(1.0, 0.0, 0.0));
-    let flat = unit_or(vec3f(to.x - start.x, 0.0, to.z - start.z), sideways);
-    nodes[j + 1u] = start + flat * run + UP * rise;
+    let segment = nodes[j + 1u] - nodes[j];
+    let aside = vec3f(segment.x, 0.0, segment.z);
+    let flat = unit_or(aside, sideways);
+    // Along `flat` the plane is `start + slope·run` above the lower node, and the upper one is where
+    // run² + rise² is the square of the length.
+    let slope = dot(plane.slope, flat.xz);
+    let square = 1.0 + slope * slope;
+    let reach = length * sqrt(square);
+    let start = clamp(plane.height - slope * dot(aside, flat) - nodes[j].y, -reach, reach);
+    let left = sqrt(max(reach * reach - start * start, 0.0));
+    let run = (left - start * slope) / square;
+    nodes[j + 1u] = nodes[j] + flat * run + UP * (start + slope * run);
 }
 
 // Turns segment j about its lower node until its upper one is out of a part, where its length
@@ -83,7 +95,7 @@ fn turn_out(tile: TileRecord, length: f32, j: u32, n: vec3f, depth: f32) -> bool
     } else if is_on_ground(tile, nodes[j + 1u]) {
         return false;
     } else {
-        turn_to(length, j, ground_below(tile, nodes[j + 1u]));
+        turn_to(length, j, plane_below(tile, nodes[j + 1u]));
     }
     return true;
 }
@@ -103,8 +115,8 @@ fn push_out(tile: TileRecord, j: u32, n: vec3f, depth: f32) -> bool {
     return true;
 }
 
-// Asks one part about segment j's upper node, and pushes or (`laying`) turns it out. Returns the
-// node's bit if that was done.
+// Asks one part about segment j's upper node, and pushes or (`laying`) turns it out. Returns whether
+// that was done.
 fn meet_part(
     tile: TileRecord,
     contact: u32,
@@ -112,26 +124,26 @@ fn meet_part(
     length: f32,
     j: u32,
     laying: bool,
-) -> u32 {
+) -> bool {
     let reach = Reach(nodes[j], select(-1.0, length, laying), before);
     let exit = way_out(contact, pose, nodes[j + 1u], faces[j], reach);
     if exit.face == NO_FACE {
-        return 0u;
+        return false;
     }
     faces[j] = contacts[contact].key | ((exit.face + 1u) & FACE_MASK);
     let n = rotate(pose.turn, exit.normal);
     if laying {
-        return select(0u, 2u << j, turn_out(tile, length, j, n, exit.depth));
+        return turn_out(tile, length, j, n, exit.depth);
     }
-    return select(0u, 2u << j, push_out(tile, j, n, exit.depth));
+    return push_out(tile, j, n, exit.depth);
 }
 
 // Pushes every node out of every part that reaches the plant, part after part; or, `laying`, lays
 // segments out at their length from root to tip and turns them out of every part and of the ground.
-// Returns a bit per node that was moved by a part.
-fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, laying: bool) -> u32 {
+// Returns whether a part moved a node.
+fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, laying: bool) -> bool {
     let parts = tile.end_contact - tile.first_contact;
-    var pushed = 0u;
+    var pushed = false;
     var posed = NO_FACE;
     var pose: Pose;
     var near = false;
@@ -151,7 +163,7 @@ fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, layi
             near = reaches(contact, nodes[0], plant_reach);
         }
         if near {
-            pushed |= meet_part(tile, contact, pose, length, j, laying);
+            pushed = meet_part(tile, contact, pose, length, j, laying) || pushed;
         }
         if laying && part + 1u == parts {
             lay_on_ground(tile, length, j);
@@ -174,20 +186,6 @@ fn bend_springs(rate: f32) {
     }
 }
 
-// Structural springs from tip to root: a node below a pushed one follows it to the segment's
-// length.
-fn follow_pushed(pushed: u32, length: f32) {
-    var held = false;
-    for (var j = field.segments - 1u; j >= 1u; j--) {
-        held = held || ((pushed >> (j + 1u)) & 1u) == 1u;
-        if held && ((pushed >> j) & 1u) == 0u {
-            let rest = unit_or(wind_nodes[j] - wind_nodes[j + 1u], -UP);
-            let inward = unit_or(nodes[j] - nodes[j + 1u], rest);
-            nodes[j] = nodes[j + 1u] + inward * length;
-        }
-    }
-}
-
 fn keep_above_ground(tile: TileRecord) {
     for (var j = 1u; j <= field.segments; j++) {
         nodes[j].y = max(nodes[j].y, ground_below(tile, nodes[j]));
@@ -207,15 +205,11 @@ fn respond(tile: TileRecord, reach: f32, done: u32, sweeps: u32, length: f32) ->
     var rounds_used = 0u;
     for (var sweep = done + 1u; sweep <= min(done + tick.relax_sweeps, sweeps); sweep++) {
         let share = f32(sweep) / f32(sweeps);
-        var pushed = 0u;
         // Round 0 is the first push, which decides whether any round follows.
         for (var round = 0u; round <= tick.most_rounds; round++) {
-            if round > 0u {
-                follow_pushed(pushed, length);
-            }
-            pushed = meet_bodies(tile, reach, length, share, round > 0u);
+            let pushed = meet_bodies(tile, reach, length, share, round > 0u);
             if round == 0u {
-                if pushed == 0u {
+                if !pushed {
                     break;
                 }
                 bend_springs(tick.bend / f32(sweeps));

@@ -242,9 +242,28 @@ impl FieldGrid {
     }
 }
 
+/// The plane of the ground's triangle under a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundPlane<R> {
+    /// Height of the ground there over the anchor's origin, in metres.
+    pub height: R,
+    /// How steeply it rises along x and z, in metres per metre.
+    pub slope: [R; 2],
+}
+
 /// Height of the ground over an anchor's origin, at a place in the anchor's coordinates. Places
 /// beyond the edge take the edge's height.
 pub fn ground_in_anchor<R: Real>(ground: &HeightGrid, anchor: &Anchor, x: R, z: R) -> R {
+    ground_plane_in_anchor(ground, anchor, x, z).height
+}
+
+/// As [`ground_in_anchor`], with the slope.
+pub fn ground_plane_in_anchor<R: Real>(
+    ground: &HeightGrid,
+    anchor: &Anchor,
+    x: R,
+    z: R,
+) -> GroundPlane<R> {
     let per_metre = R::of_f32(1.0 / ground.spacing_m);
     let squares = ground.squares();
     let locate = |p: R, axis: usize| {
@@ -261,7 +280,11 @@ pub fn ground_in_anchor<R: Real>(ground: &HeightGrid, anchor: &Anchor, x: R, z: 
     };
     let (i, u) = locate(x, 0);
     let (j, v) = locate(z, 1);
-    ground.height_in_square(i, j, u, v, anchor.base_y)
+    let [height, along_x, along_z] = ground.plane_in_square(i, j, u, v, anchor.base_y);
+    GroundPlane {
+        height,
+        slope: [along_x * per_metre, along_z * per_metre],
+    }
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@
 //! [`Counts::cut_short`](super::grass_state::Counts::cut_short).
 
 use crate::sim::Meadow;
+use crate::sim::fault::Fault;
 use crate::sim::parts::Tested;
 use crate::sim::work::{Contact, TileWork};
 
@@ -17,7 +18,7 @@ const MOST_LOOPS: u64 = 60_000;
 /// Loops of a depth cube's test: six faces, and four texels for each.
 const CUBE_LOOPS: u64 = 6 * (1 + 4);
 /// Loops over the segments in a round of relax, besides those that meet bodies.
-const LOOPS_OVER_SEGMENTS: u64 = 4;
+const LOOPS_OVER_SEGMENTS: u64 = 3;
 
 /// Dispatches of one pass in a sub-step.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -41,6 +42,12 @@ impl PassTurns {
         let (sweeps, per_node) = (most_sweeps(meadow), loops_per_node(meadow));
         let segments = u64::from(solver.segments);
         let rounds = u64::from(solver.rounds[1]) + 1;
+        if meadow.planted.is(Fault::OneTurn) {
+            return Self {
+                collide: Turns::new(sweeps, 1),
+                relax: Turns::new(sweeps, 1),
+            };
+        }
         Self {
             collide: Turns::new(sweeps, segments * per_node),
             relax: Turns::new(sweeps, rounds * segments * (per_node + LOOPS_OVER_SEGMENTS)),

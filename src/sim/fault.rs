@@ -14,6 +14,8 @@ pub enum Fault {
     RootWeight,
     /// Plants recover since the last contact of any plant of their tile.
     TimerPerTile,
+    /// All sweeps of a sub-step run in one dispatch, however many loops that takes.
+    OneTurn,
     /// Places of bodies are rounded to `f32` in the world before they become relative to a cell.
     WorldCoordinatesInF32,
 }

@@ -1,19 +1,21 @@
 //! Relax: what a touched plant does within one sub-step.
 //!
-//! Push out, then (springs and lengths along the ground, push out, ground) until no segment is strained by more
-//! than the limit, at least and at most as often as the solver says; the ground wins over the
-//! body. The sub-step is cut into sweeps, so that no body crosses more than a sixteenth of its
-//! half thickness at once.
+//! Push out, springs, then lay out from root to tip, along the ground and around bodies, until no
+//! segment is strained by more than the limit, at least and at most as often as the solver says; the
+//! ground wins over the body. The sub-step is cut into sweeps, so that no body crosses more than a
+//! sixteenth of its half thickness at once.
 //!
 //! Springs (O09 eq. 6-7, responsibilities r₁ + r₂ = 1): structural ones are replaced by lengths
-//! from root to tip, which hold exactly after one pass; bend springs join every second node, rest
-//! at the wind pose's distance, and act once per sweep, before the rounds. A node moves by
-//! r·2a·(‖l‖ − l₀) with a = κΔt/(1 + 2κΔt), which acts alike at any Δt, instead of k·Δt, which does
-//! not. Springs act only on plants pushed in this sub-step: one that a resting body merely holds
+//! from root to tip, which hold exactly after one pass, and in which a pushed node turns about the
+//! one below. That one does not move towards it (r = 0): where blades are pressed from above it
+//! would bow out backwards, and they fold up in ways that hang on the last bit. Bend springs join
+//! every second node, rest at the wind pose's distance, and act once per sweep, before the rounds. A
+//! node moves by r·2a·(‖l‖ − l₀) with a = κΔt/(1 + 2κΔt), which acts alike at any Δt, instead of
+//! k·Δt, which does not. Springs act only on plants pushed in this sub-step: one that a resting body merely holds
 //! stays as it is, so nothing trembles. WGSL twin: `shaders/relax.wgsl`.
 
 use crate::base::{Pose, Real, Vec3, vec3};
-use crate::field::grid::ground_in_anchor;
+use crate::field::grid::{GroundPlane, ground_plane_in_anchor};
 use crate::field::{Anchor, Nodes};
 use crate::scene::method::{Collide, Springs};
 use crate::terrain::HeightGrid;
@@ -22,8 +24,9 @@ use super::contact::{Laid, Touch};
 use super::fault::{Fault, Planted};
 use super::springs::{self, LiteralBlade, relax_blade};
 
-/// A body whose surface is closer to level than this cosine (45°) holds what it presses onto the
-/// ground; a steeper one pushes it along.
+/// A body whose surface makes less than 45° with the ground (this cosine) holds what it presses onto
+/// it; a steeper one pushes it along. A wedge holds what rubs against both its sides with a friction
+/// coefficient of at least the tangent of half its angle: 0.41 here.
 pub const STICKS: f64 = 0.707;
 /// A node this close to the ground lies on it, in metres: some roundings of its coordinates.
 pub const ON_GROUND_M: f64 = 1e-6;
@@ -101,8 +104,7 @@ pub fn respond<R: Real>(
     for sweep in 1..=sweeps {
         let share = R::of(f64::from(sweep)) / R::of(f64::from(sweeps));
         let bodies = Bodies::at(touches, share, nodes[0], reach);
-        let mut pushed = bodies.push_out(nodes, faces, place);
-        if pushed == 0 {
+        if !bodies.push_out(nodes, faces, place) {
             continue;
         }
         if let Some(literal) = &settings.literal {
@@ -114,12 +116,11 @@ pub fn respond<R: Real>(
         let rate = settings.bend / R::of(f64::from(sweeps));
         bend_springs(nodes, place, rate, settings.planted);
         for round in 1..=settings.most_rounds {
-            follow_pushed(nodes, pushed, place);
-            pushed = lay_out(nodes, faces, &bodies, place);
+            let turned = lay_out(nodes, faces, &bodies, place);
             keep_above_ground(nodes, place);
             rounds_used = rounds_used.max(round);
             let strain = largest_strain(nodes, place.segments, place.length);
-            let clear = pushed == 0 || !settings.until_clear;
+            let clear = !turned || !settings.until_clear;
             if round >= settings.fewest_rounds && strain <= settings.strain_limit && clear {
                 break;
             }
@@ -142,9 +143,9 @@ impl<'a, R: Real> Bodies<'a, R> {
     }
 
     /// Pushes every node out of every part, parts in their order, and those that are pressed onto
-    /// the ground straight down to it. Returns a bit per node that was moved.
-    fn push_out(&self, nodes: &mut Nodes<R>, faces: &mut [u32], place: &Place<R>) -> u32 {
-        let mut pushed = 0;
+    /// the ground straight down to it. Returns whether one was moved.
+    fn push_out(&self, nodes: &mut Nodes<R>, faces: &mut [u32], place: &Place<R>) -> bool {
+        let mut pushed = false;
         for (touch, pose) in &self.posed {
             for (j, face) in faces.iter_mut().enumerate() {
                 let node = nodes[j + 1];
@@ -159,7 +160,7 @@ impl<'a, R: Real> Bodies<'a, R> {
                 } else {
                     nodes[j + 1] = place.below(node);
                 }
-                pushed |= 1 << (j + 1);
+                pushed = true;
             }
         }
         pushed
@@ -198,7 +199,7 @@ impl<'a, R: Real> Bodies<'a, R> {
             } else if place.is_on_ground(to) {
                 continue;
             } else {
-                to = place.turn_to(from, to, place.below(to).y, rest);
+                to = place.turn_to(from, to, &place.plane_below(to), rest);
             }
             turned = true;
         }
@@ -232,31 +233,16 @@ fn bend_springs<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, rate: R, plante
     }
 }
 
-/// Structural springs from tip to root: a node below a pushed one follows it to the segment's
-/// length, so that a blade pushed against its own direction bows out instead of being shortened.
-/// The pushed node is held by the body and has no responsibility (r = 0), its partner all of it.
-fn follow_pushed<R: Real>(nodes: &mut Nodes<R>, pushed: u32, place: &Place<R>) {
-    let mut held = false;
-    for j in (1..place.segments).rev() {
-        held |= pushed >> (j + 1) & 1 == 1;
-        if held && pushed >> j & 1 == 0 {
-            let rest = (place.wind[j] - place.wind[j + 1]).unit_or(-Vec3::UP);
-            let inward = (nodes[j] - nodes[j + 1]).unit_or(rest);
-            nodes[j] = nodes[j + 1] + inward * place.length;
-        }
-    }
-}
-
 /// Moves nodes onto the rest length of their segments, from root to tip. A segment that would dip
 /// into the ground is laid on it at its full length (cutting it off there would shorten it), one
-/// that would end in a body is turned out of it.
+/// that would end in a body is turned out of it. Returns whether one was.
 fn lay_out<R: Real>(
     nodes: &mut Nodes<R>,
     faces: &mut [u32],
     bodies: &Bodies<R>,
     place: &Place<R>,
-) -> u32 {
-    let mut pushed = 0;
+) -> bool {
+    let mut any_turned = false;
     for (j, face) in faces.iter_mut().enumerate() {
         let from = nodes[j];
         let rest = (place.wind[j + 1] - place.wind[j]).unit_or(Vec3::UP);
@@ -269,24 +255,31 @@ fn lay_out<R: Real>(
         };
         let (next, turned) = bodies.turn_out(&laid, next, rest, face, place);
         nodes[j + 1] = place.lay_on_ground(from, next, rest);
-        pushed |= u32::from(turned) << (j + 1);
+        any_turned |= turned;
     }
-    pushed
+    any_turned
 }
 
 impl<R: Real> Place<'_, R> {
-    /// The ground under a node.
-    fn below(&self, node: Vec3<R>) -> Vec3<R> {
-        let height = ground_in_anchor(self.ground, self.anchor, node.x, node.z);
-        vec3(node.x, height, node.z)
+    /// The ground's plane under a node.
+    fn plane_below(&self, node: Vec3<R>) -> GroundPlane<R> {
+        ground_plane_in_anchor(self.ground, self.anchor, node.x, node.z)
     }
 
-    /// True for a node that a body presses onto the ground: its way out leads below it, and down
-    /// rather than sideways. Such a node goes straight down and stays. Sliding along the body's
+    /// The ground under a node.
+    fn below(&self, node: Vec3<R>) -> Vec3<R> {
+        vec3(node.x, self.plane_below(node).height, node.z)
+    }
+
+    /// True for a node that a body presses onto the ground: its way out leads below it, and into it
+    /// rather than along. Such a node goes straight down and stays. Sliding along the body's
     /// normal as well would creep on in every round and sweep, until the node lies beside the
     /// place where body and ground overlap: the pose would tell their number.
     fn is_pressed(&self, out: Vec3<R>, normal: Vec3<R>) -> bool {
-        normal.y < R::of(-STICKS) && out.y < self.below(out).y
+        let GroundPlane { height, slope } = self.plane_below(out);
+        let steepness = R::ONE + slope[0] * slope[0] + slope[1] * slope[1];
+        let into = slope[0] * normal.x + slope[1] * normal.z - normal.y;
+        into > R::of(STICKS) * steepness.sqrt() && out.y < height
     }
 
     fn is_on_ground(&self, node: Vec3<R>) -> bool {
@@ -295,23 +288,35 @@ impl<R: Real> Place<'_, R> {
 
     /// Turns a segment about its lower node until its upper one is on the ground, if it is below.
     fn lay_on_ground(&self, from: Vec3<R>, to: Vec3<R>, rest: Vec3<R>) -> Vec3<R> {
-        let height = self.below(to).y;
-        if to.y >= height {
+        let plane = self.plane_below(to);
+        if to.y >= plane.height {
             return to;
         }
-        self.turn_to(from, to, height, rest)
+        self.turn_to(from, to, &plane, rest)
     }
 
-    /// Turns a segment about its lower node until its upper one is at a height, as far as its
-    /// length allows.
-    fn turn_to(&self, from: Vec3<R>, to: Vec3<R>, height: R, rest: Vec3<R>) -> Vec3<R> {
-        let rise = (height - from.y).clamp(-self.length, self.length);
-        let run = (self.length * self.length - rise * rise)
-            .max(R::ZERO)
-            .sqrt();
+    /// Turns a segment about its lower node, up or down, until its upper one is on the plane of the
+    /// ground below it, as far as its length allows.
+    fn turn_to(
+        &self,
+        from: Vec3<R>,
+        to: Vec3<R>,
+        plane: &GroundPlane<R>,
+        rest: Vec3<R>,
+    ) -> Vec3<R> {
         let sideways = vec3(rest.x, R::ZERO, rest.z).unit_or(vec3(R::ONE, R::ZERO, R::ZERO));
-        let flat = vec3(to.x - from.x, R::ZERO, to.z - from.z).unit_or(sideways);
-        from + flat * run + Vec3::UP * rise
+        let aside = vec3(to.x - from.x, R::ZERO, to.z - from.z);
+        let flat = aside.unit_or(sideways);
+        // Along `flat` the plane is `start + slope·run` above the lower node, and the upper one is
+        // where run² + rise² is the square of the length.
+        let slope = plane.slope[0] * flat.x + plane.slope[1] * flat.z;
+        let square = R::ONE + slope * slope;
+        let reach = self.length * square.sqrt();
+        let start = plane.height - slope * aside.dot(flat) - from.y;
+        let start = start.clamp(-reach, reach);
+        let left = (reach * reach - start * start).max(R::ZERO).sqrt();
+        let run = (left - start * slope) / square;
+        from + flat * run + Vec3::UP * (start + slope * run)
     }
 }
 

@@ -103,9 +103,12 @@ impl<R: Real> Reach<R> {
     }
 }
 
-/// A node this close below a surface was beyond it, in metres: it may have been held there.
+/// A node this close below a surface was beyond it, in metres: as far as one may be that a body still
+/// holds ([`HOLD_M`](super::contact::HOLD_M)).
 pub const CAME_THROUGH_M: f64 = 1e-3;
-/// Two ways out lead to opposite sides where their normals' product is below this.
+/// Two ways out lead to opposite sides where their normals' product is below this (120°): not those
+/// through neighbouring faces of a box, but those to either side of a plate or of an edge sharper
+/// than 60°.
 pub const OPPOSITE: f64 = -0.5;
 
 /// The way out of a solid.

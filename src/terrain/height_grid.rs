@@ -57,40 +57,34 @@ impl HeightGrid {
         self.heights_m[j * self.columns as usize + i]
     }
 
-    /// Height above `base` inside square (`i`, `j`) at the fractions `u`, `v` in 0…1 along x and z.
-    pub fn height_in_square<R: Real>(&self, i: u32, j: u32, u: R, v: R, base: f32) -> R {
+    /// Height above `base` inside square (`i`, `j`) at the fractions `u`, `v` in 0…1 along x and z,
+    /// and by how much the triangle there rises across the square along x and z.
+    pub fn plane_in_square<R: Real>(&self, i: u32, j: u32, u: R, v: R, base: f32) -> [R; 3] {
         let at = |di, dj| R::of_f32(self.sample(i + di, j + dj)) - R::of_f32(base);
         let (h00, h10, h01, h11) = (at(0, 0), at(1, 0), at(0, 1), at(1, 1));
-        if (i + j) & 1 == 0 {
-            if u >= v {
-                h00 + u * (h10 - h00) + v * (h11 - h10)
-            } else {
-                h00 + v * (h01 - h00) + u * (h11 - h01)
-            }
-        } else if u + v <= R::ONE {
-            h00 + u * (h10 - h00) + v * (h01 - h00)
-        } else {
-            h11 + (R::ONE - u) * (h01 - h11) + (R::ONE - v) * (h10 - h11)
+        let is_even = (i + j) & 1 == 0;
+        if !is_even && u + v > R::ONE {
+            let height = h11 + (R::ONE - u) * (h01 - h11) + (R::ONE - v) * (h10 - h11);
+            return [height, h11 - h01, h11 - h10];
         }
+        let (along_x, along_z) = match (is_even, u >= v) {
+            (true, true) => (h10 - h00, h11 - h10),
+            (true, false) => (h11 - h01, h01 - h00),
+            (false, _) => (h10 - h00, h01 - h00),
+        };
+        [h00 + u * along_x + v * along_z, along_x, along_z]
     }
 
     /// Height at a world place; places beyond the edge take the edge's.
     pub fn height_in_world(&self, x: f64, z: f64) -> f64 {
         let (i, u, j, v) = self.locate(x, z);
-        self.height_in_square(i, j, u, v, 0.0)
+        self.plane_in_square(i, j, u, v, 0.0)[0]
     }
 
     /// Unit normal of the triangle under a world place.
     pub fn normal_in_world(&self, x: f64, z: f64) -> [f64; 3] {
         let (i, u, j, v) = self.locate(x, z);
-        let h = |di, dj| f64::from(self.sample(i + di, j + dj));
-        let (h00, h10, h01, h11) = (h(0, 0), h(1, 0), h(0, 1), h(1, 1));
-        let (rise_x, rise_z) = match ((i + j) & 1 == 0, u >= v, u + v <= 1.0) {
-            (true, true, _) => (h10 - h00, h11 - h10),
-            (true, false, _) => (h11 - h01, h01 - h00),
-            (false, _, true) => (h10 - h00, h01 - h00),
-            (false, _, false) => (h11 - h01, h11 - h10),
-        };
+        let [_, rise_x, rise_z] = self.plane_in_square(i, j, u, v, 0.0);
         let s = f64::from(self.spacing_m);
         let length = (rise_x * rise_x + s * s + rise_z * rise_z).sqrt();
         [-rise_x / length, s / length, -rise_z / length]

@@ -8,6 +8,7 @@ mod passes;
 mod plants;
 mod probe;
 mod runs;
+mod scenes;
 
 use std::sync::Arc;
 
@@ -62,6 +63,10 @@ const CHECKS: &[(&str, Check)] = &[
         "a_full_device_refuses_and_counts",
         runs::a_full_device_refuses_and_counts,
     ),
+    (
+        "a_driver_that_cuts_loops_short_is_told_of",
+        runs::a_driver_that_cuts_loops_short_is_told_of,
+    ),
 ];
 
 fn open() -> Result<Device, String> {
@@ -76,16 +81,21 @@ fn main() {
     let required = std::env::var_os("SWARD_REQUIRE_GPU").is_some_and(|v| v == "1");
     let device = Arc::new(open());
     let missing = matches!(&*device, Err(reason) if reason.contains("no graphics adapter"));
-    let trials = CHECKS
-        .iter()
-        .map(|&(name, check)| {
-            let device = Arc::clone(&device);
-            let run = move || match &*device {
-                Ok(device) => check(device),
-                Err(reason) => Err(reason.into()),
-            };
-            Trial::test(name, run).with_ignored_flag(missing && !required)
-        })
+    let on_device = |name: String, check: Box<dyn Fn(&Device) -> Result<(), Failed> + Send>| {
+        let device = Arc::clone(&device);
+        let run = move || match &*device {
+            Ok(device) => check(device),
+            Err(reason) => Err(reason.into()),
+        };
+        Trial::test(name, run).with_ignored_flag(missing && !required)
+    };
+    let checks = CHECKS.iter();
+    let mut trials: Vec<Trial> = checks
+        .map(|&(name, check)| on_device(name.to_owned(), Box::new(check)))
         .collect();
+    trials.extend(scenes::names().into_iter().map(|scene| {
+        let name = format!("scene::{scene}");
+        on_device(name, Box::new(move |device| scenes::agrees(device, &scene)))
+    }));
     libtest_mimic::run(&arguments, trials).exit();
 }

@@ -2,7 +2,9 @@
 
 use libtest_mimic::Failed;
 use sward::gpu::{Dispatches, GpuGrass, GpuState};
+use sward::run::accuracy::scenes::SCENES;
 use sward::scene::Collider;
+use sward::sim::fault::{Fault, Planted};
 use sward::sim::measure::{self, GrassState, Standing};
 use sward::sim::{Grass, Meadow};
 
@@ -179,4 +181,37 @@ pub fn a_full_device_refuses_and_counts(device: &Device) -> Result<(), Failed> {
     ensure(snapshot.not_finite == 0 && pushed > 0, || {
         format!("{} not finite, {pushed} pushed", snapshot.not_finite)
     })
+}
+
+/// Hundreds of sweeps in one dispatch, where the default takes turns: a driver either runs them all,
+/// and the result is that of the turns, or the kernels tell that it did not.
+pub fn a_driver_that_cuts_loops_short_is_told_of(device: &Device) -> Result<(), Failed> {
+    let plate = SCENES.iter().find(|scene| scene.name == "plate");
+    let loaded = plate.ok_or("the report has no plate")?.load()?;
+    let first_tick = |planted| -> Result<(Vec<Standing<f32>>, u32), Failed> {
+        let mut meadow = Meadow::new(loaded.scene.clone(), &loaded.assets)?;
+        meadow.planted = planted;
+        let mut gpu = GpuGrass::new(&device.gpu, &device.kernels, &mut meadow)?;
+        sward::gpu::tick(&mut meadow, &mut gpu)?;
+        let turns = gpu.dispatches.relax as u32;
+        let state = gpu.read_state(&meadow)?;
+        Ok((plants(&meadow, &state), turns))
+    };
+    let (in_turns, turns) = first_tick(Planted::NONE)?;
+    ensure(turns > 1, || format!("{turns} turns prove nothing"))?;
+    match first_tick(Planted::plant(Fault::OneTurn)) {
+        Err(error) => {
+            let text = error.message().unwrap_or_default().to_owned();
+            println!("{text}");
+            ensure(text.contains("has ended loops"), || text.clone())
+        }
+        Ok((at_once, _)) => {
+            let mut tracks = Tracks::default();
+            tracks.add(&at_once, &in_turns)?;
+            // Turns round offsets once each: 2⁻²⁴ of half a metre, which contacts may amplify.
+            ensure(tracks.flipped == 0 && tracks.worst_m <= RMS_M, || {
+                format!("{} m, {} flipped", tracks.worst_m, tracks.flipped)
+            })
+        }
+    }
 }

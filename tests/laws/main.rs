@@ -2,6 +2,8 @@
 
 #![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
 
+mod pressed;
+
 use std::collections::BTreeMap;
 
 use sward::base::{Real, Vec3};
@@ -306,71 +308,4 @@ fn the_reference_converges_at_first_order() {
             assert!(range.contains(&order), "{what}: order {order}");
         }
     }
-}
-
-/// A ball that stands 2 mm in the ground: with its skin it overlaps the ground in a disc of 30 mm.
-const SUNK: &str = r#"(
-    terrain: (ground: Flat(size_m: (2, 2))),
-    grass: (density_per_m2: 4000),
-    wind: (strength: 0, gust: 0, flutter: 0),
-    bodies: [(name: "ball", shape: Ball(radius_m: 0.15), position_m: (0, 0.148, 0), motion: Fixed)],
-)"#;
-
-/// The nodes of touched plants, from the ball's foot, at least one segment from their root.
-fn nodes_about_the_ball(meadow: &Meadow, grass: &Grass<f32>) -> Vec<[f64; 3]> {
-    let plants = touched(meadow, grass).into_values();
-    let ball = Vec3::of(meadow.bodies.links()[0].to.place.to_f64());
-    plants
-        .flat_map(|plant| {
-            let [x, z] = plant.root_in_world();
-            let root = plant.nodes[0].to_f64();
-            let aside = Vec3::new(x - root[0], 0.0, z - root[2]);
-            let nodes = plant.nodes.into_iter().skip(1);
-            nodes.map(move |node| (aside + Vec3::of(node.to_f64()) - ball).to_f64())
-        })
-        .collect()
-}
-
-/// The same ball, led over the grass to where the other one stands.
-const LED_SUNK: &str = r#"(
-    terrain: (ground: Flat(size_m: (1.5, 1))),
-    grass: (density_per_m2: 4000),
-    wind: (strength: 0, gust: 0, flutter: 0),
-    bodies: [(name: "ball", shape: Ball(radius_m: 0.15), motion: Path(waypoints: [
-        (at_s: 0, position_m: (-0.5, 0.148, 0)), (at_s: 0.5, position_m: (0, 0.148, 0))]))],
-)"#;
-
-/// Sliding such nodes out along the ball's normal moves them a little aside in every round, until
-/// they lie around the disc and none in it.
-#[test]
-fn what_is_pressed_onto_the_ground_stays() {
-    let mut loaded = scene(LED_SUNK);
-    let mut pressed = |rounds: [u32; 2]| {
-        loaded.scene.solver.rounds = rounds;
-        let (meadow, grass) = run::<f32>(&loaded, 72);
-        let nodes = nodes_about_the_ball(&meadow, &grass);
-        let in_disc = |n: &&[f64; 3]| n[0].hypot(n[2]) < 0.025 && n[1] < -0.1479;
-        nodes.iter().filter(in_disc).count()
-    };
-    let (few, many) = (pressed([2, 2]), pressed([16, 16]));
-    println!("{few} nodes in the disc after 2 rounds, {many} after 16");
-    assert!(few > 10, "{few}");
-    assert_eq!(few, many);
-}
-
-/// Which way a blade leaves a body that is suddenly around it would hang on millimetres; one that
-/// comes from above presses it down.
-#[test]
-fn a_body_that_appears_is_let_down_on_the_grass() {
-    let (meadow, grass) = run::<f32>(&scene(SUNK), 2);
-    let nodes = nodes_about_the_ball(&meadow, &grass);
-    let under = |n: &&[f64; 3]| n[0].hypot(n[2]) < 0.075;
-    let over = |n: &&[f64; 3]| under(n) && n[1] > 0.0;
-    let (under, over) = (
-        nodes.iter().filter(under).count(),
-        nodes.iter().filter(over).count(),
-    );
-    println!("{under} nodes within half the ball's radius, {over} of them over its middle");
-    assert!(under > 20, "{under}");
-    assert_eq!(over, 0);
 }
