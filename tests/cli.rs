@@ -84,8 +84,120 @@ fn usage_errors_are_2_and_help_is_0() {
 fn a_method_that_the_gpu_does_not_know_is_4() {
     // Without an adapter the code is 4 as well.
     let arguments = ["run", "still", "--engine", "gpu", "--method", "paper"];
-    assert_eq!(code(&sward(&arguments)), 4);
+    let refused = sward(&arguments);
+    assert_eq!(code(&refused), 4);
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    if !said.contains("no graphics adapter") {
+        assert!(
+            said.contains("--engine cpu") && said.contains("cube-64"),
+            "{said}"
+        );
+        assert!(
+            !said.contains("nearest-64") && !said.contains('{'),
+            "{said}"
+        );
+    }
     assert_eq!(code(&sward(&["run", "still", "--method", "none"])), 2);
+}
+
+#[test]
+fn a_wrong_lean_is_told_as_it_was_given() {
+    let output = sward(&[
+        "blade-shape",
+        "--segments",
+        "8",
+        "--stiffness",
+        "64",
+        "--lean",
+        "181",
+    ]);
+    assert_eq!(code(&output), 2);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("--lean 181: give 0 to 180 degrees"), "{said}");
+}
+
+#[test]
+fn a_missing_file_has_no_line_and_a_missing_folder_is_not_made() {
+    for arguments in [
+        &["run", "/no/such.ron"][..],
+        &["replay", "/no/such.recording"],
+    ] {
+        let output = sward(arguments);
+        assert_eq!(code(&output), 3);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(
+            said.contains(&format!("{}: the file", arguments[1])),
+            "{said}"
+        );
+    }
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("no folder of this test");
+    for (option, file) in [
+        ("--trace", "a.csv"),
+        ("--junit", "a.xml"),
+        ("--out", "results"),
+    ] {
+        let place = folder.join(file).display().to_string();
+        let output = sward(&["run", "still", "--engine", "cpu", option, &place]);
+        assert_eq!(code(&output), 5, "{option}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(
+            said.contains("does not exist; make it first"),
+            "{option}: {said}"
+        );
+        assert!(!folder.exists(), "{option}");
+    }
+}
+
+const STANDS: &str = r#"(
+    duration_s: 0.1,
+    terrain: (ground: Flat(size_m: (2, 2))),
+    grass: (density_per_m2: 64.0),
+    bodies: [(name: "ball", shape: Ball(radius_m: 0.2), position_m: (0, 0.2, 0), motion: MOTION)],
+)"#;
+
+#[test]
+fn a_run_against_the_reference_is_judged() {
+    let fixed = scene("stands.ron", &STANDS.replace("MOTION", "Fixed"));
+    let run = |path: &str, more: &[&str]| {
+        sward(
+            &[
+                &["run", path, "--engine", "cpu", "--against", "reference"],
+                more,
+            ]
+            .concat(),
+        )
+    };
+    let output = run(&fixed, &["--json"]);
+    assert_eq!(code(&output), 0);
+    let report = json(&output);
+    let judged = &report["scenarios"][0]["against_reference"];
+    let limits = judged["limits"].as_array().expect("limits");
+    let all = limits.iter().all(|limit| limit["passed"] == true);
+    assert!(limits.len() >= 2 && limits.iter().all(|limit| limit["limit"].is_number()));
+    assert_eq!(judged["within_limits"], all);
+    let text = String::from_utf8_lossy(&run(&fixed, &[]).stdout).into_owned();
+    let verdict = if all {
+        "reference    within its limits"
+    } else {
+        "reference    OVER"
+    };
+    assert!(
+        text.contains(verdict) && text.contains("poses, root mean square"),
+        "{text}"
+    );
+
+    // Other blades, and free bodies that would go another way.
+    let free = scene("lies.ron", &STANDS.replace("MOTION", "Free"));
+    for (path, method, why) in [
+        (&fixed, "root-paper", "blades are other ones"),
+        (&free, "substep-480", "free bodies"),
+    ] {
+        let output = run(path, &["--method", method]);
+        assert_eq!(code(&output), 2, "{method}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains(method) && said.contains(why), "{said}");
+    }
+    assert_eq!(code(&run(&fixed, &["--method", "substep-480"])), 0);
 }
 
 #[test]

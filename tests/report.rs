@@ -24,6 +24,10 @@ fn report(arguments: &[&str]) -> Output {
     sward(&[&["report", "accuracy", "--no-gpu"], arguments].concat())
 }
 
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
 /// An empty folder of this test, with the tiny scene beside it.
 fn folder(name: &str) -> (PathBuf, String) {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
@@ -92,6 +96,79 @@ fn an_unknown_method_is_2_with_the_list() {
     assert_eq!(code(&report(&["--resume"])), 2);
 }
 
+/// The same program but for a byte at its end, which its loader does not read.
+#[cfg(unix)]
+#[test]
+fn points_of_another_program_are_measured_again() {
+    let (folder, scene) = folder("another program");
+    let out = folder.join("out").display().to_string();
+    let arguments = ["--scene", &scene, "--method", "default", "--out", &out];
+    assert_eq!(code(&report(&arguments)), 0);
+    let keys = || -> Vec<String> {
+        let points = fs::read_to_string(folder.join("out/points.csv")).expect("the points");
+        let key = |line: &str| line.split(',').next().map(str::to_owned);
+        points.lines().skip(1).filter_map(key).collect()
+    };
+    let first = keys();
+    let resumed = report(&[&arguments[..], &["--resume"]].concat());
+    assert_eq!((code(&resumed), keys()), (0, first.clone()));
+    assert_eq!(said(&resumed), "");
+
+    let other = folder.join("sward");
+    let mut bytes = fs::read(env!("CARGO_BIN_EXE_sward")).expect("the program");
+    bytes.push(0);
+    fs::copy(env!("CARGO_BIN_EXE_sward"), &other).expect("a copy that can be run");
+    fs::write(&other, bytes).expect("the copy");
+    let rebuilt = std::process::Command::new(&other)
+        .args(["report", "accuracy", "--no-gpu", "--resume"])
+        .args(arguments)
+        .output()
+        .expect("the copy starts");
+    assert_eq!(code(&rebuilt), 0, "{}", said(&rebuilt));
+    assert!(said(&rebuilt).contains("2 points are of another program"));
+    let second = keys();
+    assert_eq!(second.len(), 2, "nothing of the other program is left");
+    assert!(second.iter().all(|key| !first.contains(key)));
+}
+
+#[test]
+fn a_narrower_report_does_not_lose_the_points_of_a_wider_one() {
+    let (folder, scene) = folder("narrower");
+    let out = folder.join("out").display().to_string();
+    let wide = [
+        "--scene", &scene, "--method", "default", "--method", "analytic", "--out", &out,
+    ];
+    assert_eq!(code(&report(&wide)), 0);
+    let points = || fs::read_to_string(folder.join("out/points.csv")).expect("the points");
+    let before = points();
+    let narrow = [
+        "--scene", &scene, "--method", "default", "--out", &out, "--resume",
+    ];
+    let refused = report(&narrow);
+    assert_eq!(code(&refused), 2);
+    let text = said(&refused);
+    assert!(text.contains("`tiny` (analytic)"), "{text}");
+    assert_eq!(points(), before);
+}
+
+#[test]
+fn scenes_and_methods_are_listed_and_a_scene_is_asked_for_once() {
+    let listed = report(&["--list"]);
+    assert_eq!(code(&listed), 0);
+    let text = String::from_utf8(listed.stdout).expect("text");
+    let unknown = said(&report(&["--scene", "bogus"]));
+    let help = String::from_utf8(report(&["--help"]).stdout).expect("text");
+    for scene in ["roll", "roll-3", "box-slide", "plate", "drop", "fork"] {
+        let starts = |line: &str| line.trim_start().starts_with(&format!("{scene} "));
+        assert!(text.lines().any(starts), "{text}");
+        assert!(unknown.contains(scene), "{unknown}");
+        assert!(help.contains(scene), "{help}");
+    }
+    assert!(text.contains("sweep-1/8") && help.contains("sweep-1/8"));
+    assert!(!unknown.contains(":1:1"), "{unknown}");
+    assert_eq!(code(&report(&["--scene", "roll", "--scene", "roll"])), 2);
+}
+
 #[test]
 fn an_unknown_scene_is_3_and_a_folder_that_cannot_be_written_is_5() {
     assert_eq!(code(&report(&["--scene", "no such scene"])), 3);
@@ -104,4 +181,10 @@ fn an_unknown_scene_is_3_and_a_folder_that_cannot_be_written_is_5() {
     assert_eq!(code(&refused), 5);
     assert!(refused.stdout.is_empty());
     assert!(String::from_utf8_lossy(&refused.stderr).contains(&out));
+    // A slip in the path must not make folders.
+    let nowhere = folder.join("no/such/folder");
+    let refused = report(&["--scene", &scene, "--out", &nowhere.display().to_string()]);
+    assert_eq!(code(&refused), 5);
+    assert!(said(&refused).contains("does not exist"));
+    assert!(!folder.join("no").exists());
 }

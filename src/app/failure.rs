@@ -19,12 +19,18 @@ pub enum Failure {
     Usage(String),
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A scene that is nowhere, with the names that there are.
+    #[error("{0}")]
+    UnknownScene(String),
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error(transparent)]
     Run(#[from] RunError),
     #[error(transparent)]
     Stage(#[from] StageError),
+    /// Something the machine or the engine does not have, in words.
+    #[error("{0}")]
+    Missing(String),
     /// The platform refuses a window, for a reason in its own words.
     #[error("no window: {0}")]
     Window(String),
@@ -42,10 +48,11 @@ impl Failure {
     pub fn exit(&self) -> Exit {
         match self {
             Self::Usage(_) => Exit::Usage,
-            Self::Scene(_) => Exit::Invalid,
+            Self::Scene(_) | Self::UnknownScene(_) => Exit::Invalid,
             Self::Run(error) => exit_of_run(error),
             Self::Stage(error) => exit_of_stage(error),
             Self::Gpu(error) => exit_of_gpu(error),
+            Self::Missing(_) => Exit::NoAdapter,
             Self::Output(_) if self.is_closed_pipe() => Exit::Ok,
             Self::Internal(_) | Self::Window(_) | Self::Output(_) | Self::File { .. } => {
                 Exit::Internal
@@ -72,7 +79,7 @@ pub fn exit_of_run(error: &RunError) -> Exit {
     match error {
         RunError::Meadow { .. } => Exit::Invalid,
         RunError::Gpu { source, .. } => exit_of_gpu(source),
-        RunError::Rate(_) => Exit::Usage,
+        RunError::Rate(_) | RunError::NotComparable { .. } => Exit::Usage,
     }
 }
 

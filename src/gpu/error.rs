@@ -24,8 +24,8 @@ pub enum GpuError {
     },
 
     #[error(
-        "the gpu engine does not know the scene's solver.method ({asked}): leave it out, or take \
-         --engine cpu"
+        "the gpu engine does not have these settings of solver.method: {asked}; leave them out, or \
+         take --engine cpu"
     )]
     UnknownMethod { asked: String },
 

@@ -66,6 +66,11 @@ impl GrassKernels {
 /// True for the formulas that the kernels have: the default ones, with cubes or closed forms for
 /// every body, and any cut of time.
 pub fn knows_method(method: &Method) -> bool {
+    unknown_settings(method).is_empty()
+}
+
+/// What the kernels do not have of a method, as keys and values of `solver.method`.
+fn unknown_settings(method: &Method) -> Vec<String> {
     let &Method {
         collide,
         sampling,
@@ -77,9 +82,27 @@ pub fn knows_method(method: &Method) -> bool {
         grass_steps: _,
     } = method;
     let known = Method::default();
-    !matches!(collide, Collide::Voxels | Collide::Exact)
-        && (sampling, cube_per, push) == (known.sampling, known.cube_per, known.push)
-        && (springs, recovery) == (known.springs, known.recovery)
+    let voxels_or_exact = matches!(collide, Collide::Voxels | Collide::Exact);
+    let settings = [
+        (voxels_or_exact, format!("collide: {collide:?}")),
+        (
+            sampling != known.sampling,
+            format!("sampling: {sampling:?}"),
+        ),
+        (
+            cube_per != known.cube_per,
+            format!("cube_per: {cube_per:?}"),
+        ),
+        (push != known.push, format!("push: {push:?}")),
+        (springs != known.springs, format!("springs: {springs:?}")),
+        (
+            recovery != known.recovery,
+            format!("recovery: {recovery:?}"),
+        ),
+    ];
+    let unknown = settings.into_iter().filter(|(unknown, _)| *unknown);
+    // Scenes write the names of variants, which are single words, in small letters.
+    unknown.map(|(_, setting)| setting.to_lowercase()).collect()
 }
 
 /// Passes dispatched since the start.
@@ -122,8 +145,9 @@ impl GpuGrass {
     /// A ground or blade table larger than the device can bind.
     pub fn new(gpu: &Gpu, kernels: &GrassKernels, meadow: &mut Meadow) -> Result<Self, GpuError> {
         let solver = &meadow.scene.solver;
-        if !knows_method(&solver.method) {
-            let asked = format!("{:?}", solver.method);
+        let unknown = unknown_settings(&solver.method);
+        if !unknown.is_empty() {
+            let asked = unknown.join(", ");
             return Err(GpuError::UnknownMethod { asked });
         }
         let bytes = slab_bytes(meadow.field.grid.plants_per_tile(), solver.segments);

@@ -1,5 +1,7 @@
 //! A run beside the reference engine: the same scene, tick by tick, and how far the poses differ.
 
+use serde::Serialize;
+
 use crate::gpu::{GpuError, TickError};
 use crate::scene::Scene;
 use crate::scene::assets::Assets;
@@ -8,6 +10,84 @@ use crate::sim::{Meadow, MeadowError};
 pub use super::compare::Difference;
 use super::compare::{Comparison, touched_plants};
 use super::engine::Engine;
+use super::judge::Verdict;
+use super::report::Expectation;
+
+/// Pose error that a run may have, in metres, root mean square: at sub-steps of the grass longer than
+/// [`SHORT_S`], and at those not longer.
+const MOST_RMS_M: [f64; 2] = [0.010, 0.003];
+/// 1/480 s, and the rounding of a division.
+const SHORT_S: f64 = 1.0 / 479.9;
+/// Share of the touched plants that may end on another side of a body.
+const MOST_FLIPS: f64 = 0.01;
+/// Overlap that imprints have at least.
+const LEAST_OVERLAP: f64 = 0.95;
+
+/// The limits of a run's distance from the reference.
+#[derive(Clone, Debug, Serialize)]
+pub struct AgainstReference {
+    /// Null where nothing was touched.
+    pub within_limits: Option<bool>,
+    pub limits: Vec<Expectation>,
+}
+
+impl AgainstReference {
+    pub fn of(difference: &Difference, substep_s: f64) -> Self {
+        let verdicts = verdicts(difference, substep_s);
+        let judged: Option<Vec<bool>> = verdicts.iter().map(|verdict| verdict.passed).collect();
+        Self {
+            within_limits: judged.map(|all| all.into_iter().all(|passed| passed)),
+            limits: verdicts.iter().map(Expectation::of).collect(),
+        }
+    }
+}
+
+/// What a difference is worth: one verdict per limit. They are told, but no scenario fails by them: a
+/// scene says with its expectations what it needs.
+fn verdicts(difference: &Difference, substep_s: f64) -> Vec<Verdict> {
+    if difference.touched_plants == 0 {
+        return vec![Verdict {
+            passed: None,
+            measured: None,
+            limit: None,
+            reason: Some("no plant was touched in either run".into()),
+            ..limited("poses", 0.0, 0.0, "m")
+        }];
+    }
+    let rms_limit_m = MOST_RMS_M[usize::from(substep_s <= SHORT_S)];
+    let flips = difference.side_flips as f64 / difference.touched_plants as f64;
+    let mut verdicts = vec![
+        limited(
+            "poses, root mean square",
+            difference.pose_rms_m,
+            rms_limit_m,
+            "m",
+        ),
+        limited(
+            "plants on another side",
+            100.0 * flips,
+            100.0 * MOST_FLIPS,
+            "%",
+        ),
+    ];
+    verdicts.extend(difference.imprint_iou.map(|overlap| Verdict {
+        passed: Some(overlap >= LEAST_OVERLAP),
+        ..limited("imprint overlap, at least", overlap, LEAST_OVERLAP, "")
+    }));
+    verdicts
+}
+
+fn limited(what: &str, measured: f64, limit: f64, unit: &'static str) -> Verdict {
+    Verdict {
+        what: what.into(),
+        passed: Some(measured <= limit),
+        measured: Some(measured),
+        limit: Some(limit),
+        unit,
+        at_s: None,
+        reason: None,
+    }
+}
 
 /// The reference beside a run, and what differed so far.
 pub struct Against {
@@ -66,5 +146,39 @@ impl Against {
     /// What differed over all frames.
     pub fn finish(&self) -> Difference {
         self.comparison.finish(&self.meadow.field)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn passed(difference: &Difference, substep_s: f64) -> Vec<Option<bool>> {
+        let verdicts = verdicts(difference, substep_s);
+        verdicts.iter().map(|verdict| verdict.passed).collect()
+    }
+
+    #[test]
+    fn each_limit_is_judged_and_short_sub_steps_more_strictly() {
+        let fine = Difference {
+            pose_rms_m: 0.004,
+            imprint_iou: Some(0.96),
+            side_flips: 1,
+            touched_plants: 100,
+            ..Difference::default()
+        };
+        assert_eq!(passed(&fine, 1.0 / 120.0), [Some(true); 3]);
+        assert_eq!(
+            passed(&fine, 1.0 / 480.0),
+            [Some(false), Some(true), Some(true)]
+        );
+        let poor = Difference {
+            pose_rms_m: f64::NAN,
+            imprint_iou: Some(0.94),
+            side_flips: 2,
+            ..fine
+        };
+        assert_eq!(passed(&poor, 1.0 / 120.0), [Some(false); 3]);
+        assert_eq!(passed(&Difference::default(), 1.0 / 120.0), [None]);
     }
 }

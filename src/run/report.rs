@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::gpu::{AdapterReport, Gpu};
 
+use super::against::AgainstReference;
 use super::exit::Exit;
 use super::judge::Verdict;
 use super::scenario::Outcome;
@@ -76,6 +77,9 @@ pub struct Scenario {
     pub state_hash: Option<String>,
     /// What each body's parts were tested by, in the order of names.
     pub colliders: Vec<Collider>,
+    /// What the distance from the reference is worth; null without a comparison. No scenario fails by
+    /// it.
+    pub against_reference: Option<AgainstReference>,
     /// The exit code of a scenario that could not be run.
     #[serde(skip)]
     pub broken: Option<Exit>,
@@ -199,6 +203,8 @@ impl Scenario {
                     analytic_parts,
                 })
                 .collect(),
+            against_reference: (outcome.difference.as_ref())
+                .map(|d| AgainstReference::of(d, meadow.scene.solver.substep_s)),
             broken: None,
         }
     }
@@ -221,7 +227,7 @@ impl Scenario {
 }
 
 impl Expectation {
-    fn of(verdict: &Verdict) -> Self {
+    pub(super) fn of(verdict: &Verdict) -> Self {
         Self {
             what: verdict.what.clone(),
             passed: verdict.passed,

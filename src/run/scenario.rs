@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::gpu::{Gpu, GpuError, GrassKernels, TickError};
-use crate::scene::LoadedScene;
+use crate::scene::{LoadedScene, Scene};
 use crate::sim::measure::Snapshot;
 use crate::sim::{Meadow, MeadowError};
 
+use super::accuracy::why_not_comparable;
 use super::against::{Against, Difference};
 use super::engine::Engine;
 use super::judge::{Judge, Verdict, exceeded_limits};
@@ -175,6 +176,15 @@ pub enum RunError {
     Meadow { name: String, source: MeadowError },
     #[error("{name}: {source}")]
     Gpu { name: String, source: GpuError },
+    #[error(
+        "{name}: --against reference has nothing to say of --method {method}, since {why}; leave one of \
+         them out"
+    )]
+    NotComparable {
+        name: String,
+        method: &'static str,
+        why: &'static str,
+    },
     #[error("--hz is {0}; it must be a number of frames per second from 1 to 10000")]
     Rate(f64),
 }
@@ -186,6 +196,23 @@ impl RunError {
             TickError::Meadow(source) => Self::Meadow { name, source },
             TickError::Gpu(source) => Self::Gpu { name, source },
         }
+    }
+}
+
+/// Whether a method's poses mean anything beside those of the scene's own reference.
+fn comparable(
+    name: &str,
+    scene: &Scene,
+    method: Option<&'static NamedMethod>,
+) -> Result<(), RunError> {
+    let why = method.and_then(|method| Some((method, why_not_comparable(scene, method)?)));
+    match why {
+        None => Ok(()),
+        Some((method, why)) => Err(RunError::NotComparable {
+            name: name.to_owned(),
+            method: method.name,
+            why,
+        }),
     }
 }
 
@@ -223,6 +250,7 @@ pub fn run_watched(
     scene.grass.seed = options.seed.unwrap_or(scene.grass.seed);
     let mut against = None;
     if options.against_reference {
+        comparable(name, &scene, options.method)?;
         let reference = Against::reference(scene.clone(), &loaded.assets);
         against = Some(reference.map_err(|error| RunError::new(name, error))?);
     }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
+use super::against::AgainstReference;
 use super::report::{Collider, Expectation, Metrics, Report, Scenario};
 
 /// Most bodies of a kind of collider that are named in a row.
@@ -44,6 +45,9 @@ fn write_scenario(scenario: &Scenario, out: &mut impl Write) -> io::Result<()> {
         write_expectation(expectation, out)?;
     }
     write_metrics(&scenario.metrics, out)?;
+    if let Some(against) = &scenario.against_reference {
+        write_against(against, out)?;
+    }
     for kind in colliders(&scenario.colliders) {
         writeln!(out, "  collider     {kind}")?;
     }
@@ -80,6 +84,20 @@ fn write_expectation(expectation: &Expectation, out: &mut impl Write) -> io::Res
         write!(out, " ({reason})")?;
     }
     writeln!(out)
+}
+
+/// The verdict on the distance from the reference, and what it rests on.
+fn write_against(against: &AgainstReference, out: &mut impl Write) -> io::Result<()> {
+    let verdict = match against.within_limits {
+        Some(true) => "within its limits",
+        Some(false) => "OVER a limit",
+        None => "no verdict",
+    };
+    writeln!(out, "  reference    {verdict}:")?;
+    for limit in &against.limits {
+        write_expectation(limit, out)?;
+    }
+    Ok(())
 }
 
 fn write_metrics(metrics: &Metrics, out: &mut impl Write) -> io::Result<()> {

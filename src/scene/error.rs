@@ -1,16 +1,18 @@
 //! What is wrong with a scene, and where.
 
+use std::fmt::{self, Display, Formatter};
+
 use super::positions::{Position, Positions};
 
-/// A scene that cannot be used. Prints as `file:line:column: key: what is wrong`.
+/// A scene that cannot be used. Prints as `file:line:column: key: what is wrong`, or as
+/// `file: what is wrong` where no text was read.
 #[derive(Debug, thiserror::Error)]
-#[error("{file}:{line}:{column}: {key}: {problem}")]
 pub struct SceneError {
     /// The scene file as it was asked for, or the name of a scene that has no file.
     pub file: String,
-    /// Counts from 1.
+    /// Counts from 1; 0 for an error about the file as a whole.
     pub line: u32,
-    /// Counts from 1, in characters.
+    /// Counts from 1, in characters; 0 for an error about the file as a whole.
     pub column: u32,
     /// Path of the key, such as `bodies[2].shape.radius_m`; `scene` for the scene as a whole.
     pub key: String,
@@ -76,6 +78,22 @@ pub enum AssetError {
     NoSolid { file: String, reason: String },
 }
 
+impl Display for SceneError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self {
+            file,
+            line,
+            column,
+            key,
+            problem,
+        } = self;
+        match line {
+            0 => write!(f, "{file}: {problem}"),
+            _ => write!(f, "{file}:{line}:{column}: {key}: {problem}"),
+        }
+    }
+}
+
 impl SceneError {
     pub(super) fn new(file: &str, position: Position, key: &str, problem: Problem) -> Self {
         Self {
@@ -95,6 +113,6 @@ impl SceneError {
 
     /// An error about a file or folder as a whole.
     pub(super) fn whole(file: &str, problem: Problem) -> Self {
-        Self::new(file, Position { line: 1, column: 1 }, "", problem)
+        Self::new(file, Position { line: 0, column: 0 }, "", problem)
     }
 }

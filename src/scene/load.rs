@@ -234,7 +234,7 @@ mod tests {
         let error = load_scene(Path::new("/no/such/scene.ron"), &[]).expect_err("it is not there");
         let text = error.to_string();
         assert!(
-            text.starts_with("/no/such/scene.ron:1:1: scene: the file cannot be read:"),
+            text.starts_with("/no/such/scene.ron: the file cannot be read:"),
             "{text}"
         );
         assert!(scene_files(Path::new("/no/such")).is_err());

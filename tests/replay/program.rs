@@ -85,6 +85,17 @@ fn replays_refuse_what_makes_no_sense() {
         (&["replay", "--verify"], 2),
         (&["replay", &broken, "--verify", "--engine", "gpu"], 2),
         (&["run", &scene, &scene, "--record", "x.recording"], 2),
+        (
+            &[
+                "run",
+                &scene,
+                "--engine",
+                "reference",
+                "--record",
+                "x.recording",
+            ],
+            2,
+        ),
         (&["replay", "/no/such.recording", "--verify"], 3),
         (&["replay", &broken], 3),
         (&["replay", &scene], 3),

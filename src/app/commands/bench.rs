@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use super::outputs::make_folder;
 use super::{bench_terrain, scene_file};
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
@@ -48,6 +49,10 @@ const MILLION: &str = "million_blades";
 
 /// Runs the bench and prints its tables.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
+    // A place that cannot be written to is told before time is spent on measuring.
+    if let Some(folder) = &arguments.out {
+        make_folder(folder)?;
+    }
     match arguments.what {
         Bench::Tiles => run_tiles(arguments, out),
         Bench::Terrain => bench_terrain::run(arguments, out),
@@ -225,7 +230,6 @@ fn write_csv(bench: &TilesBench, folder: &Path) -> Result<(), Failure> {
             row.errors.max_strain
         );
     }
-    fs::create_dir_all(folder).map_err(|error| Failure::file(folder, error))?;
     let adapter = bench.adapter.as_ref().map(|adapter| adapter.name.as_str());
     let runs_on = adapter
         .or(bench.machine.cpu.as_deref())

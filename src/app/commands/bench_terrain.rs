@@ -83,7 +83,6 @@ fn write_csv(bench: &TerrainBench, folder: &Path) -> Result<(), Failure> {
     for row in &bench.terrains {
         text += &csv_line(row);
     }
-    fs::create_dir_all(folder).map_err(|error| Failure::file(folder, error))?;
     let runs_on = bench.machine.cpu.as_deref().unwrap_or("unknown");
     let file = folder.join(format!("terrain-{}.csv", file_name(runs_on)));
     fs::write(&file, text).map_err(|error| Failure::file(&file, error))

@@ -20,7 +20,7 @@ pub struct Arguments {
     #[arg(long, value_name = "K", allow_negative_numbers = true)]
     stiffness: f64,
     /// Stiffness of the root hinge: that of the others, as in the paper, or twice that, which
-    /// agrees with a continuous beam
+    /// agrees with a continuous beam and is what scenes have unless they say otherwise
     #[arg(long, value_enum, default_value = "k")]
     root: RootStiffness,
     /// Lean of the root from the vertical, in degrees, 0 to 180
@@ -60,7 +60,12 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
         RootStiffness::Single => Root::Paper,
         RootStiffness::Double => Root::Double,
     };
-    let lean_rad = arguments.lean.to_radians();
+    let lean_deg = arguments.lean;
+    if !(0.0..=180.0).contains(&lean_deg) {
+        let text = format!("--lean {lean_deg}: give 0 to 180 degrees from the vertical");
+        return Err(Failure::Usage(text));
+    }
+    let lean_rad = lean_deg.to_radians();
     let shape = blade_shape::solve(arguments.segments, arguments.stiffness, root, lean_rad)?;
     if arguments.json {
         let json = Json {

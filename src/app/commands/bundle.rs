@@ -46,7 +46,7 @@ impl Bundle {
                 _ => {}
             }
         }
-        let trace = ResultFile::create(&folder.join(TRACE))?.into_trace();
+        let trace = ResultFile::create_with_folders(&folder.join(TRACE))?.into_trace();
         Ok(Self { folder, trace })
     }
 
@@ -73,7 +73,9 @@ impl Bundle {
         let Self { folder, trace } = self;
         let path = folder.join(TRACE);
         trace.finish().map_err(|e| Failure::file(&path, e))?;
-        let write = |file: &str, bytes: &[u8]| ResultFile::create(&folder.join(file))?.write(bytes);
+        let write = |file: &str, bytes: &[u8]| {
+            ResultFile::create_with_folders(&folder.join(file))?.write(bytes)
+        };
         write(SCENE, contents.loaded.source.as_bytes())?;
         write(METRICS, &serde_json::to_vec_pretty(contents.report)?)?;
         for file in contents.loaded.assets.file_hashes.keys() {

@@ -1,7 +1,7 @@
 //! Files of results, opened before the run: one that cannot be written must not cost hours.
 
 use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::app::Failure;
@@ -18,20 +18,30 @@ pub struct ResultFile {
 }
 
 impl ResultFile {
+    /// Makes the file in a folder that is there.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be written; a folder that does not exist, which may well be a slip.
+    pub fn create(path: &Path) -> Result<Self, Failure> {
+        let failed = |e| Failure::file(path, e);
+        folder_exists(path.parent()).map_err(failed)?;
+        Ok(Self {
+            path: path.to_owned(),
+            file: File::create(path).map_err(failed)?,
+        })
+    }
+
     /// Makes the file, and the folders it lies in.
     ///
     /// # Errors
     ///
     /// A file that cannot be written.
-    pub fn create(path: &Path) -> Result<Self, Failure> {
-        let failed = |e| Failure::file(path, e);
+    pub fn create_with_folders(path: &Path) -> Result<Self, Failure> {
         if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder).map_err(failed)?;
+            fs::create_dir_all(folder).map_err(|e| Failure::file(path, e))?;
         }
-        Ok(Self {
-            path: path.to_owned(),
-            file: File::create(path).map_err(failed)?,
-        })
+        Self::create(path)
     }
 
     /// Gives the file its content.
@@ -47,6 +57,36 @@ impl ResultFile {
     /// Starts a trace in the file.
     pub fn into_trace(self) -> FileTrace {
         Trace::new(BufWriter::new(self.file))
+    }
+}
+
+/// Makes a folder for results, where it is not there yet, in one that is, and tries to write in it.
+///
+/// # Errors
+///
+/// A folder that cannot be made or written to; one in a folder that does not exist.
+pub fn make_folder(folder: &Path) -> Result<(), Failure> {
+    let failed = |e| Failure::file(folder, e);
+    if !folder.is_dir() {
+        folder_exists(folder.parent()).map_err(failed)?;
+        fs::create_dir(folder).map_err(failed)?;
+    }
+    let probe = folder.join(format!(".sward-{}", std::process::id()));
+    File::create(&probe)
+        .and_then(|_| fs::remove_file(&probe))
+        .map_err(failed)
+}
+
+fn folder_exists(folder: Option<&Path>) -> io::Result<()> {
+    match folder {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.exists() => {
+            let text = format!(
+                "the folder {} does not exist; make it first",
+                folder.display()
+            );
+            Err(io::Error::new(io::ErrorKind::NotFound, text))
+        }
+        _ => Ok(()),
     }
 }
 

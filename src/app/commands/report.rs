@@ -1,22 +1,23 @@
 //! `sward report`.
 
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 
+use super::outputs::make_folder;
 use super::scene_file;
 use crate::app::Failure;
 use crate::app::progress::Progress;
 use crate::gpu::{Gpu, GpuError};
 use crate::run::accuracy::{
-    self, COST_SCENE, Plan, Planned, Report, Store, cost_methods, error_plot, scenes, summary_plot,
-    write_markdown,
+    self, COST_SCENE, Plan, Planned, Report, Store, Stored, cost_methods, error_plot, scenes,
+    summary_plot, write_markdown,
 };
 use crate::run::methods::{self, NamedMethod};
 use crate::run::{Device, Exit};
-use crate::scene::{LoadedScene, builtin};
+use crate::scene::{LoadedScene, Problem, SceneError, builtin};
 
 /// Measure what the methods are worth
 #[derive(Args, Debug)]
@@ -36,10 +37,12 @@ enum What {
 /// on the program's, which takes hours.
 #[derive(Args, Debug)]
 struct Accuracy {
-    /// Only these scenes: the report's own, the program's, or files; may be repeated
-    #[arg(long, value_name = "SCENE")]
+    /// List the scenes and methods of the report and do nothing else
+    #[arg(long)]
+    list: bool,
+    #[arg(long, value_name = "SCENE", help = scene_help())]
     scene: Vec<PathBuf>,
-    /// Only these methods; may be repeated
+    /// Only these methods, see --list; may be repeated
     #[arg(long, value_name = "NAME", value_parser = super::run::method_names())]
     method: Vec<String>,
     /// The report's own scenes and the ends of every curve: minutes instead of hours
@@ -51,7 +54,8 @@ struct Accuracy {
     /// Also write points.csv, accuracy.md and plots as SVG into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Keep the points that the folder already has, as after an interrupted report
+    /// Keep the points that the folder already has, as after an interrupted report; those of another
+    /// program, scene or adapter are measured again
     #[arg(long, requires = "out")]
     resume: bool,
 }
@@ -64,25 +68,65 @@ const MARKDOWN: &str = "accuracy.md";
 /// Runs the report and prints it.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
     let What::Accuracy(arguments) = &arguments.what;
+    if arguments.list {
+        list(out)?;
+        return Ok(Exit::Ok);
+    }
     let plan = plan(arguments)?;
-    let mut store = open_store(arguments)?;
+    if let Some(folder) = &arguments.out {
+        make_folder(folder)?;
+    }
     let device = if arguments.no_gpu {
         None
     } else {
         any_adapter()?
     };
+    let mut store = open_store(arguments, &plan, device.as_ref())?;
     let progress = Progress::new("report accuracy");
     let report = accuracy::run(&plan, &mut store, device.as_ref(), |done| {
         progress.set(done)
     })?;
     drop(progress);
     let mut markdown = Vec::new();
-    write_markdown(&report, &mut markdown)?;
+    write_markdown(&report, arguments.out.is_some(), &mut markdown)?;
     if let Some(folder) = &arguments.out {
         write_files(&report, &markdown, folder)?;
     }
     out.write_all(&markdown)?;
     Ok(Exit::Ok)
+}
+
+fn scene_help() -> String {
+    format!(
+        "Only these scenes: the report's own ({}), the program's (see `sward list`), or files; may be \
+         repeated",
+        own_scenes()
+    )
+}
+
+fn own_scenes() -> String {
+    let names: Vec<&str> = scenes::SCENES.iter().map(|scene| scene.name).collect();
+    names.join(", ")
+}
+
+/// Prints what `--scene` and `--method` take.
+fn list(out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, "Scenes of the report, for --scene:")?;
+    for scene in scenes::SCENES {
+        writeln!(out, "  {:<20} {}", scene.name, scene.what)?;
+    }
+    writeln!(
+        out,
+        "The program's own scenes are taken too (see `sward list`), and scene files.\n\n\
+         Methods, for --method (* left out by --quick):"
+    )?;
+    let quick = accuracy::quick_methods();
+    for method in accuracy::all_methods() {
+        let in_quick = quick.iter().any(|quick| quick.name == method.name);
+        let mark = if in_quick { ' ' } else { '*' };
+        writeln!(out, "{mark} {:<20} {}", method.name, method.what)?;
+    }
+    Ok(())
 }
 
 fn plan(arguments: &Accuracy) -> Result<Plan, Failure> {
@@ -96,14 +140,20 @@ fn plan(arguments: &Accuracy) -> Result<Plan, Failure> {
         (true, true) => accuracy::quick_methods(),
         (true, false) => accuracy::all_methods(),
     };
+    let program = match &arguments.out {
+        Some(_) => accuracy::hash_of_this_program().map_err(unknown_program)?,
+        None => 0,
+    };
     let mut plan = Plan {
         blades: arguments.method.is_empty(),
+        program,
         ..Plan::default()
     };
     if !arguments.scene.is_empty() {
         for scene in &arguments.scene {
             plan.scenes.push(Planned::new(load(scene)?, &methods));
         }
+        one_of_each_name(&plan)?;
         return Ok(plan);
     }
     for scene in scenes::SCENES {
@@ -121,34 +171,101 @@ fn plan(arguments: &Accuracy) -> Result<Plan, Failure> {
     Ok(plan)
 }
 
+fn unknown_program(error: io::Error) -> Failure {
+    let text = "the program's own file cannot be read, so that points of another program could not be \
+                told from its own";
+    Failure::Internal(format!("{text}: {error}"))
+}
+
+/// Points and plots are named after their scene.
+fn one_of_each_name(plan: &Plan) -> Result<(), Failure> {
+    let names: Vec<&str> = plan.scenes.iter().map(|s| s.loaded.name.as_str()).collect();
+    let twice = names
+        .iter()
+        .enumerate()
+        .find(|(n, name)| names[..*n].contains(name));
+    match twice {
+        Some((_, name)) => Err(Failure::Usage(format!(
+            "--scene: two scenes are named `{name}`; give each once, and rename one of two files of \
+             one name"
+        ))),
+        None => Ok(()),
+    }
+}
+
 fn load(scene: &Path) -> Result<LoadedScene, Failure> {
     let own = scene.to_str().and_then(scenes::scene);
     Ok(match own {
         Some(own) => own.load()?,
-        None => scene_file::load(scene, &[])?,
+        None => scene_file::load(scene, &[]).map_err(named_nowhere)?,
     })
 }
 
+/// Says of a scene that is not there what the report's own are.
+fn named_nowhere(error: SceneError) -> Failure {
+    match &error.problem {
+        Problem::Unreadable(reason) if reason.kind() == io::ErrorKind::NotFound => {
+            Failure::UnknownScene(format!("{error}; the report's own are {}", own_scenes()))
+        }
+        _ => error.into(),
+    }
+}
+
 /// Opens every file that will be written, so that none is refused after hours.
-fn open_store(arguments: &Accuracy) -> Result<Store, Failure> {
+fn open_store(
+    arguments: &Accuracy,
+    plan: &Plan,
+    device: Option<&Device>,
+) -> Result<Store, Failure> {
     let Some(folder) = &arguments.out else {
         return Ok(Store::in_memory());
     };
-    fs::create_dir_all(folder).map_err(|error| Failure::file(folder, error))?;
     let markdown = folder.join(MARKDOWN);
     (File::options().append(true).create(true).open(&markdown))
         .map_err(|error| Failure::file(&markdown, error))?;
     let points = folder.join(POINTS);
-    let opened = Store::open(&points, arguments.resume);
-    let store = opened.map_err(|error| Failure::file(&points, error))?;
-    if store.broken_lines > 0 {
+    let stored = if arguments.resume {
+        resumed(&points, plan, device)?
+    } else {
+        Stored::default()
+    };
+    Store::create(&points, stored).map_err(|error| Failure::file(&points, error))
+}
+
+/// The points of an earlier report that still hold.
+fn resumed(points: &Path, plan: &Plan, device: Option<&Device>) -> Result<Stored, Failure> {
+    let stored = Stored::read(points).map_err(|error| Failure::file(points, error));
+    let mut stored = stored?;
+    let left_out = stored.left_out_by(plan);
+    if !left_out.is_empty() {
+        let scenes = left_out.iter().map(|(scene, methods)| match methods[..] {
+            [] => format!("`{scene}`"),
+            _ => format!("`{scene}` ({})", methods.join(", ")),
+        });
+        let scenes: Vec<String> = scenes.collect();
+        return Err(Failure::Usage(format!(
+            "--resume: {} has points that this report would lose: {}. Ask for them too, or take \
+             another --out",
+            points.display(),
+            scenes.join("; ")
+        )));
+    }
+    let others = stored.keep(&plan.keys(device));
+    if others > 0 {
+        log::warn!(
+            "{}: {others} points are of another program, scene, setting or adapter; they are measured \
+             again",
+            points.display()
+        );
+    }
+    if stored.broken_lines > 0 {
         log::warn!(
             "{}: {} lines are no whole points; they are measured again",
             points.display(),
-            store.broken_lines
+            stored.broken_lines
         );
     }
-    Ok(store)
+    Ok(stored)
 }
 
 /// Any adapter, a software one too: rounding does not depend on its speed.

@@ -9,18 +9,19 @@ use clap::{Args, ValueEnum};
 
 use super::bundle::{Bundle, Contents, End, recording_name, text_of};
 use super::follow::Follower;
-use super::outputs::{FileTrace, ResultFile, finish_trace};
+use super::outputs::{FileTrace, ResultFile, finish_trace, make_folder};
 use super::scene_file;
 use crate::app::device::EngineArguments;
 use crate::app::failure::exit_of_run;
 use crate::app::progress::Progress;
 use crate::app::{Failure, complain};
+use crate::gpu::knows_method;
 use crate::run::methods::{self, METHODS, NamedMethod};
 use crate::run::report::{Adapter, Report, Scenario};
 use crate::run::{
-    Device, Exit, Outcome, Recorder, RunError, RunOptions, junit, run_watched, table,
+    Device, EngineChoice, Exit, Outcome, Recorder, RunError, RunOptions, junit, run_watched, table,
 };
-use crate::scene::{LoadedScene, limits};
+use crate::scene::{LoadedScene, Solver, limits};
 
 /// Run scenarios without a window and check their expectations
 #[derive(Args, Debug)]
@@ -47,7 +48,8 @@ pub struct Arguments {
     /// Settings of the solver by name, instead of the scene's
     #[arg(long, value_name = "NAME", value_parser = method_names())]
     method: Option<String>,
-    /// Also run this engine beside, and tell how far the poses differ
+    /// Also run this engine beside, with the blades and sub-step of the scene, and tell how far the poses
+    /// differ and what of that is within limits; no scenario fails by it
     #[arg(long, value_enum, value_name = "ENGINE")]
     against: Option<Truth>,
     /// Another folder in which assets are looked up; may be repeated
@@ -87,9 +89,11 @@ pub(super) fn method_names() -> PossibleValuesParser {
 /// Runs all scenes and prints the report.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
     let options = options(arguments)?;
+    refuse_what_cannot_be_recorded(arguments)?;
     let names = scene_file::distinct_names(&arguments.scenes);
     let mut outputs = Outputs::open(arguments, &names)?;
     let device = arguments.engine.open()?;
+    refuse_unknown_to_gpu(&device, options.method)?;
     let adapter = device.gpu().map(Adapter::of);
     let mut report = Report::new(device.engine_name(), adapter, options.hz);
     let recordings = std::mem::take(&mut outputs.recordings);
@@ -144,6 +148,39 @@ fn options(arguments: &Arguments) -> Result<RunOptions, Failure> {
     })
 }
 
+/// A recording is verified with the cpu engine, whose bodies take other steps than the reference's.
+fn refuse_what_cannot_be_recorded(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.record.is_some() && arguments.engine.choice()? == EngineChoice::Reference {
+        let text = "--record with --engine reference: a recording is replayed and verified on the cpu \
+                    engine, which takes other sub-steps; record with --engine cpu or gpu";
+        return Err(Failure::Usage(text.into()));
+    }
+    Ok(())
+}
+
+fn refuse_unknown_to_gpu(
+    device: &Device,
+    method: Option<&'static NamedMethod>,
+) -> Result<(), Failure> {
+    let known = |method: &NamedMethod| {
+        let mut solver = Solver::default();
+        method.apply(&mut solver);
+        knows_method(&solver.method)
+    };
+    match method {
+        Some(method) if device.gpu().is_some() && !known(method) => {
+            let names = METHODS.iter().filter(|m| known(m)).map(|m| m.name);
+            let names: Vec<&str> = names.collect();
+            Err(Failure::Missing(format!(
+                "--method {}: the gpu engine does not have it; take --engine cpu, or one of {}",
+                method.name,
+                names.join(", ")
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Every file the run is to write, opened before it.
 struct Outputs {
     trace: Option<FileTrace>,
@@ -156,6 +193,9 @@ struct Outputs {
 
 impl Outputs {
     fn open(arguments: &Arguments, names: &[String]) -> Result<Self, Failure> {
+        if let Some(folder) = &arguments.out {
+            make_folder(folder)?;
+        }
         let open = |path: Option<PathBuf>| path.as_deref().map(ResultFile::create).transpose();
         let in_out = |file: &str| arguments.out.as_ref().map(|folder| folder.join(file));
         Ok(Self {
@@ -202,6 +242,9 @@ fn open_recordings(
         );
         return Err(Failure::Usage(text));
     }
+    if !is_file {
+        make_folder(path)?;
+    }
     let file_of = |name: &String| match is_file {
         true => path.clone(),
         false => path.join(recording_name(name)),
@@ -237,7 +280,10 @@ impl Batch<'_> {
             Err(error) => return Scenario::broken(name, error.to_string(), error.exit()),
         };
         let recorder = match (Recorder::new(&loaded, self.options), &record) {
-            (Ok(recorder), _) if record.is_some() || bundle.is_some() => Some(recorder),
+            (Ok(recorder), _) if record.is_some() || bundle.is_some() => {
+                // What the reference does cannot be replayed.
+                Some(recorder).filter(|_| !matches!(self.device, Device::Reference))
+            }
             (Err(error), Some(_)) => {
                 return Scenario::broken(name.clone(), format!("{name}: {error}"), Exit::Usage);
             }

@@ -3,10 +3,11 @@
 //! it is used at.
 
 use super::lane::{Kind, Lane};
+use super::relative::Relative;
 use crate::base::statistics::median;
 use crate::run::methods::NamedMethod;
 use crate::run::scenario::RunError;
-use crate::scene::LoadedScene;
+use crate::scene::{LoadedScene, Solver};
 
 /// The scene that is timed.
 pub const SCENE: &str = "ball_roll";
@@ -28,6 +29,13 @@ const LITERAL_HZ: f64 = 60.0;
 /// Simulated time, in seconds: the ball is in the grass all along.
 const TIMED_S: f64 = 2.0;
 
+/// A method's lane, and what each of the scene's sub-steps took.
+struct Timed {
+    method: &'static str,
+    lane: Lane,
+    steps_ms: Vec<Option<f64>>,
+}
+
 /// A method's cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CostRow {
@@ -36,6 +44,8 @@ pub struct CostRow {
     pub hz: f64,
     /// Median of collide and relax.
     pub ms_per_substep: f64,
+    /// The same over that of the literal method in the same sub-steps; `None` at another rate.
+    pub over_literal: Option<Relative>,
     /// True for the rows that are compared with each other: those at the scene's sub-step.
     pub at_equal_steps: bool,
 }
@@ -56,31 +66,47 @@ pub fn measure(
     methods: &[&'static NamedMethod],
 ) -> Result<Vec<CostRow>, RunError> {
     let scene_step_s = loaded.scene.solver.substep_s;
-    let timed = methods.iter().filter(|m| METHODS.contains(&m.name));
     let mut lanes = Vec::new();
-    for method in timed {
+    for method in methods.iter().filter(|m| METHODS.contains(&m.name)) {
         let mut solver = loaded.scene.solver.clone();
         method.apply(&mut solver);
-        lanes.push((method.name, Lane::new(loaded, &solver, Kind::Single)?));
+        lanes.push(Timed::new(method.name, loaded, &solver)?);
         if method.name == LITERAL {
             solver.substep_s = 1.0 / LITERAL_HZ;
-            lanes.push((method.name, Lane::new(loaded, &solver, Kind::Single)?));
+            lanes.push(Timed::new(method.name, loaded, &solver)?);
         }
     }
     let ends = 1..=(TIMED_S / scene_step_s) as u32;
     for end_s in ends.map(|n| f64::from(n) * scene_step_s) {
-        for (_, lane) in &mut lanes {
-            lane.advance_to(end_s)?;
+        for timed in &mut lanes {
+            timed.lane.advance_to(end_s)?;
+            timed.steps_ms.push(timed.lane.take_frame_ms());
         }
     }
-    let row = |(method, lane): &(&'static str, Lane)| {
-        let substep_s = lane.meadow.scene.solver.substep_s;
-        CostRow {
+    let literal = lanes.iter().find(|timed| timed.method == LITERAL);
+    let rows = lanes.iter().map(|timed| timed.row(literal, scene_step_s));
+    Ok(rows.collect())
+}
+
+impl Timed {
+    fn new(method: &'static str, loaded: &LoadedScene, solver: &Solver) -> Result<Self, RunError> {
+        Ok(Self {
             method,
+            lane: Lane::new(loaded, solver, Kind::Single)?,
+            steps_ms: Vec::new(),
+        })
+    }
+
+    fn row(&self, literal: Option<&Self>, scene_step_s: f64) -> CostRow {
+        let substep_s = self.lane.meadow.scene.solver.substep_s;
+        let at_equal_steps = substep_s == scene_step_s;
+        let literal = literal.filter(|_| at_equal_steps);
+        CostRow {
+            method: self.method,
             hz: 1.0 / substep_s,
-            ms_per_substep: median(&lane.grass_ms).unwrap_or(0.0),
-            at_equal_steps: substep_s == scene_step_s,
+            ms_per_substep: median(&self.lane.grass_ms).unwrap_or(0.0),
+            over_literal: literal.and_then(|of| Relative::of(&self.steps_ms, &of.steps_ms)),
+            at_equal_steps,
         }
-    };
-    Ok(lanes.iter().map(row).collect())
+    }
 }

@@ -32,6 +32,8 @@ pub struct Lane {
     pub engine: Engine,
     /// Milliseconds that collide and relax took in each sub-step in which a body was near grass.
     pub grass_ms: Vec<f64>,
+    /// Their sum since it was last taken.
+    frame_ms: Option<f64>,
 }
 
 impl Lane {
@@ -56,6 +58,7 @@ impl Lane {
             name,
             meadow,
             grass_ms: Vec::new(),
+            frame_ms: None,
         })
     }
 
@@ -98,9 +101,17 @@ impl Lane {
         let ticked = self.engine.tick(&mut self.meadow);
         ticked.map_err(|error| self.error(error))?;
         if !self.meadow.work.contacts.is_empty() {
-            self.grass_ms.push(grass_ms(&self.engine) - before);
+            let ms = grass_ms(&self.engine) - before;
+            self.grass_ms.push(ms);
+            self.frame_ms = Some(self.frame_ms.unwrap_or(0.0) + ms);
         }
         Ok(())
+    }
+
+    /// Milliseconds that collide and relax took since this was last asked; `None` where no body was
+    /// near grass.
+    pub fn take_frame_ms(&mut self) -> Option<f64> {
+        self.frame_ms.take()
     }
 
     /// Every plant that a body has touched and that is not back at rest.

@@ -1,95 +1,189 @@
-//! One point of the report: a method on a scene, timed, and its error split by where it comes from.
+//! Points of the report: methods on a scene, timed beside the default, and the error of each split
+//! by where it comes from.
 
-use super::lane::{Kind, Lane, end_of_frame_s, frames};
+use super::lane::{FRAMES_PER_S, Kind, Lane, end_of_frame_s, frames};
+use super::relative::Relative;
 use super::store::Row;
 use super::truth::Truth;
 use crate::base::statistics::median;
 use crate::gpu::knows_method;
-use crate::run::compare::Comparison;
+use crate::run::compare::{Comparison, Plants};
 use crate::run::methods::NamedMethod;
 use crate::run::scenario::{Device, RunError};
 use crate::run::watch::Watch;
-use crate::scene::LoadedScene;
+use crate::scene::{LoadedScene, Solver};
 
 /// Strain that a method may leave.
-const MOST_STRAIN: f64 = 0.02;
+pub const MOST_STRAIN: f64 = 0.02;
 /// Share of touched plants that may slide to another side of a body.
-const MOST_FLIPS: f64 = 0.01;
+pub const MOST_FLIPS: f64 = 0.01;
 /// Pose error that a method may have, in metres, root mean square.
 pub const MOST_RMS_M: f64 = 0.010;
 
-/// Runs a method on a scene: on the cpu engine for the total error and the time, with the same
-/// kernels in `f64` for the error of the method alone, and on a graphics device where there is one
-/// that knows the method. Nothing else runs in the timed part.
+/// Runs methods on a scene in turns, frame by frame: each on the cpu engine for the total error and
+/// the time, with the same kernels in `f64` for the error of the method alone, and on a graphics
+/// device where there is one that knows the method. The default is timed with them in every frame.
+/// `progress` gets the share done.
 ///
 /// # Errors
 ///
 /// A scene that cannot be laid out; the device's.
 pub fn measure(
     loaded: &LoadedScene,
-    method: &NamedMethod,
+    methods: &[&'static NamedMethod],
     truth: &Truth,
     gpu: Option<&Device>,
-) -> Result<Row, RunError> {
-    let mut solver = loaded.scene.solver.clone();
-    method.apply(&mut solver);
-    let mut cpu = Lane::new(loaded, &solver, Kind::Single)?;
-    let mut double = Lane::new(loaded, &solver, Kind::Double)?;
-    let gpu = gpu.filter(|_| knows_method(&solver.method));
-    let device = |device| Lane::new(loaded, &solver, Kind::Device(device));
-    let mut gpu = gpu.map(device).transpose()?;
-    let mut watch = Watch::default();
-    let [mut total, mut of_method, mut precision, mut rounding] =
-        std::array::from_fn(|_| Comparison::default());
-    for frame in 0..frames(loaded.scene.duration_s) {
-        let end_s = end_of_frame_s(frame);
-        cpu.advance_to(end_s)?;
-        let watched = watch.frame(&cpu.meadow, &mut cpu.engine);
-        watched.map_err(|error| cpu.error(error))?;
-        let plants = cpu.plants()?;
-        double.advance_to(end_s)?;
-        let exact = double.plants()?;
-        if let Some(gpu) = &mut gpu {
-            gpu.advance_to(end_s)?;
-            rounding.frame(&gpu.plants()?, &plants);
+    mut progress: impl FnMut(f64),
+) -> Result<Vec<Row>, RunError> {
+    let mut default = Timed::new(Lane::new(loaded, &loaded.scene.solver, Kind::Single)?);
+    let points = methods
+        .iter()
+        .map(|&method| Point::new(loaded, method, gpu));
+    let mut points = points.collect::<Result<Vec<Point>, RunError>>()?;
+    let count = frames(loaded.scene.duration_s);
+    for frame in 0..count {
+        let others = points.iter_mut().map(|point| &mut point.cpu);
+        let mut timed: Vec<&mut Timed> = std::iter::once(&mut default).chain(others).collect();
+        // The first to run finds the caches cold: each is first in turn. Nothing else runs between.
+        let first = frame as usize % timed.len();
+        timed.rotate_left(first);
+        for timed in timed {
+            timed.advance(frame)?;
         }
-        precision.frame(&plants, &exact);
-        if let Some(truth) = truth.frames.get(frame as usize) {
-            total.frame(&plants, truth);
-            of_method.frame(&exact, truth);
+        for point in &mut points {
+            point.compare(frame, truth.frames.get(frame as usize))?;
+        }
+        progress(f64::from(frame + 1) / f64::from(count));
+    }
+    let rows = points.into_iter();
+    Ok(rows
+        .map(|point| point.row(loaded, &default.frames_ms))
+        .collect())
+}
+
+/// A run on the cpu engine, and what each of its frames took.
+struct Timed {
+    lane: Lane,
+    frames_ms: Vec<Option<f64>>,
+}
+
+impl Timed {
+    fn new(lane: Lane) -> Self {
+        Self {
+            lane,
+            frames_ms: Vec::new(),
         }
     }
-    let field = &cpu.meadow.field;
-    let rms_m = |comparison: &Comparison| finite(comparison.finish(field).pose_rms_m);
-    let difference = total.finish(field);
-    let ms_per_substep = median(&cpu.grass_ms).unwrap_or(0.0);
-    Ok(Row {
-        key: String::new(),
-        scene: loaded.name.clone(),
-        method: method.name.to_owned(),
-        family: method.family.to_owned(),
-        substep_s: solver.substep_s,
-        ms_per_substep,
-        ms_per_s: ms_per_substep / solver.substep_s,
-        rms_m: finite(difference.pose_rms_m),
-        p95_m: finite(difference.pose_p95_m),
-        rms_lengths: finite(difference.pose_rms_lengths),
-        p95_lengths: finite(difference.pose_p95_lengths),
-        imprint_iou: difference.imprint_iou,
-        side_flips: difference.side_flips,
-        touched_plants: difference.touched_plants,
-        penetration_max_m: watch.max_penetration_m(),
-        penetration_p999_m: watch.p999_penetration_m(),
-        penetration_rms_m: watch.rms_penetration_m(),
-        penetration_middle_m: watch.max_middle_m,
-        penetration_over_limit: watch.worst.depth_m / watch.worst.limit_m,
-        over_push_m: watch.over_push_m,
-        strain: watch.max_strain,
-        not_finite: watch.not_finite,
-        rounding_rms_m: gpu.and_then(|_| rms_m(&rounding)),
-        precision_rms_m: rms_m(&precision),
-        method_rms_m: rms_m(&of_method),
-    })
+
+    fn advance(&mut self, frame: u32) -> Result<(), RunError> {
+        self.lane.advance_to(end_of_frame_s(frame))?;
+        self.frames_ms.push(self.lane.take_frame_ms());
+        Ok(())
+    }
+}
+
+/// A method on a scene while it is measured.
+struct Point {
+    method: &'static NamedMethod,
+    solver: Solver,
+    cpu: Timed,
+    double: Lane,
+    gpu: Option<Lane>,
+    watch: Watch,
+    total: Comparison,
+    of_method: Comparison,
+    precision: Comparison,
+    rounding: Comparison,
+}
+
+impl Point {
+    fn new(
+        loaded: &LoadedScene,
+        method: &'static NamedMethod,
+        gpu: Option<&Device>,
+    ) -> Result<Self, RunError> {
+        let mut solver = loaded.scene.solver.clone();
+        method.apply(&mut solver);
+        let gpu = gpu.filter(|_| knows_method(&solver.method));
+        let device = |device| Lane::new(loaded, &solver, Kind::Device(device));
+        Ok(Self {
+            method,
+            cpu: Timed::new(Lane::new(loaded, &solver, Kind::Single)?),
+            double: Lane::new(loaded, &solver, Kind::Double)?,
+            gpu: gpu.map(device).transpose()?,
+            solver,
+            watch: Watch::default(),
+            total: Comparison::default(),
+            of_method: Comparison::default(),
+            precision: Comparison::default(),
+            rounding: Comparison::default(),
+        })
+    }
+
+    /// What is measured at the end of a frame.
+    fn compare(&mut self, frame: u32, truth: Option<&Plants>) -> Result<(), RunError> {
+        let end_s = end_of_frame_s(frame);
+        let cpu = &mut self.cpu.lane;
+        let watched = self.watch.frame(&cpu.meadow, &mut cpu.engine);
+        watched.map_err(|error| cpu.error(error))?;
+        let plants = cpu.plants()?;
+        self.double.advance_to(end_s)?;
+        let exact = self.double.plants()?;
+        if let Some(gpu) = &mut self.gpu {
+            gpu.advance_to(end_s)?;
+            self.rounding.frame(&gpu.plants()?, &plants);
+        }
+        self.precision.frame(&plants, &exact);
+        if let Some(truth) = truth {
+            self.total.frame(&plants, truth);
+            self.of_method.frame(&exact, truth);
+        }
+        Ok(())
+    }
+
+    fn row(&self, loaded: &LoadedScene, default_ms: &[Option<f64>]) -> Row {
+        let field = &self.cpu.lane.meadow.field;
+        let rms_m = |comparison: &Comparison| finite(comparison.finish(field).pose_rms_m);
+        let difference = self.total.finish(field);
+        let watch = &self.watch;
+        let default_ms_per_s = ms_per_s(default_ms);
+        let relative = Relative::of(&self.cpu.frames_ms, default_ms);
+        Row {
+            key: String::new(),
+            scene: loaded.name.clone(),
+            method: self.method.name.to_owned(),
+            family: self.method.family.to_owned(),
+            substep_s: self.solver.substep_s,
+            times_default: relative.map(|r| r.median),
+            times_default_low: relative.map(|r| r.low),
+            times_default_high: relative.map(|r| r.high),
+            default_ms_per_s,
+            rms_m: finite(difference.pose_rms_m),
+            p95_m: finite(difference.pose_p95_m),
+            rms_lengths: finite(difference.pose_rms_lengths),
+            p95_lengths: finite(difference.pose_p95_lengths),
+            imprint_iou: difference.imprint_iou,
+            side_flips: difference.side_flips,
+            touched_plants: difference.touched_plants,
+            penetration_max_m: watch.max_penetration_m(),
+            penetration_p999_m: watch.p999_penetration_m(),
+            penetration_rms_m: watch.rms_penetration_m(),
+            penetration_middle_m: watch.max_middle_m,
+            penetration_over_limit: watch.worst.depth_m / watch.worst.limit_m,
+            over_push_m: watch.over_push_m,
+            strain: watch.max_strain,
+            not_finite: watch.not_finite,
+            rounding_rms_m: self.gpu.as_ref().and_then(|_| rms_m(&self.rounding)),
+            precision_rms_m: rms_m(&self.precision),
+            method_rms_m: rms_m(&self.of_method),
+        }
+    }
+}
+
+/// Milliseconds per simulated second, from the median frame in which a body was near grass.
+fn ms_per_s(frames_ms: &[Option<f64>]) -> f64 {
+    let at_work: Vec<f64> = frames_ms.iter().copied().flatten().collect();
+    median(&at_work).unwrap_or(0.0) * FRAMES_PER_S
 }
 
 /// A number that can be stored; `None` for what blew up.
@@ -116,17 +210,36 @@ pub fn floor_row(loaded: &LoadedScene, truth: &Truth) -> Row {
 }
 
 impl Row {
-    /// The limits that this point misses, in words; none for a point that passes.
-    pub fn misses(&self) -> Vec<&'static str> {
+    /// The limits that this point misses, in words; none for a point that passes. Where the references
+    /// differ by more than the limit themselves, poses and sides are not judged.
+    pub fn misses(&self, floor: &Self) -> Vec<&'static str> {
+        let judged = floor.judges_poses();
         let flips = self.side_flips as f64 > MOST_FLIPS * self.touched_plants as f64;
         let checks = [
             ("not finite", self.not_finite > 0 || self.rms_m.is_none()),
             ("penetration", self.penetration_over_limit > 1.0),
             ("strain", self.strain > MOST_STRAIN),
-            ("sides", flips),
-            ("poses", self.rms_m.is_some_and(|rms| rms > MOST_RMS_M)),
+            ("sides", judged && flips),
+            (
+                "poses",
+                judged && self.rms_m.is_some_and(|rms| rms > MOST_RMS_M),
+            ),
         ];
         let missed = checks.into_iter().filter(|check| check.1);
         missed.map(|check| check.0).collect()
+    }
+
+    /// Of a noise floor: whether it is below the limit of poses.
+    pub fn judges_poses(&self) -> bool {
+        self.rms_m.is_none_or(|floor_m| floor_m <= MOST_RMS_M)
+    }
+
+    /// The time over that of the default, where the scene had any work.
+    pub fn relative(&self) -> Option<Relative> {
+        Some(Relative {
+            median: self.times_default?,
+            low: self.times_default_low?,
+            high: self.times_default_high?,
+        })
     }
 }

@@ -9,7 +9,9 @@ mod blades;
 mod cost;
 mod lane;
 mod measure;
+mod plan;
 mod plot;
+mod relative;
 pub mod scenes;
 mod store;
 mod summary;
@@ -19,120 +21,33 @@ mod truth;
 use std::io;
 
 pub use blades::Blades;
-pub use cost::{CostRow, METHODS as COST_METHODS, SCENE as COST_SCENE};
+pub use cost::{CostRow, SCENE as COST_SCENE};
+pub use plan::{
+    Context, LeftOut, Plan, Planned, all_methods, cost_methods, has_free_bodies,
+    hash_of_this_program, quick_methods, why_not_comparable,
+};
 pub use plot::{PlotError, error_plot, summary_plot};
-pub use store::{Row, Store};
+pub use relative::Relative;
+pub use store::{Row, Store, Stored};
 pub use table::write_markdown;
 
 use super::bench::Machine;
-use super::methods::{METHODS, NamedMethod, method};
 use super::report::Adapter;
 use super::scenario::{Device, RunError};
 use crate::field::blade_table::TableError;
-use crate::scene::{LoadedScene, Motion, Scene, to_ron};
+use crate::scene::Scene;
 use truth::Truth;
 
 /// Name under which the distance of two references is listed.
 pub const FLOOR: &str = "noise floor";
 
-/// Methods that the quick report leaves out: inner points of curves whose ends it has.
-const NOT_QUICK: [&str; 8] = [
-    "cube-128",
-    "bilinear-16",
-    "voxels-64",
-    "rounds-2",
-    "segments-6",
-    "grass-steps-2",
-    "table-32",
-    "table-256",
-];
-
 /// Frames of a reference count as so many points in the progress: two of them in `f64` at eight
 /// and eleven times the sub-steps.
 const TRUTH_POINTS: f64 = 6.0;
 
-/// Scenes, and the methods that are run on each.
-#[derive(Clone, Debug, Default)]
-pub struct Plan {
-    pub scenes: Vec<Planned>,
-    /// Whether the resting shapes of blades are measured too.
-    pub blades: bool,
-}
-
-/// A scene of a plan.
-#[derive(Clone, Debug)]
-pub struct Planned {
-    pub loaded: LoadedScene,
-    pub methods: Vec<&'static NamedMethod>,
-    pub left_out: Vec<LeftOut>,
-}
-
-/// A method that cannot be compared on a scene, and why.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LeftOut {
-    pub method: &'static str,
-    pub why: &'static str,
-}
-
-impl Planned {
-    /// A scene with the methods that can be compared on it.
-    pub fn new(loaded: LoadedScene, methods: &[&'static NamedMethod]) -> Self {
-        let free = has_free_bodies(&loaded.scene);
-        let mut planned = Self {
-            loaded,
-            methods: Vec::new(),
-            left_out: Vec::new(),
-        };
-        for &method in methods {
-            let scene = &planned.loaded.scene;
-            let why = if !method.keeps_blades(&scene.solver) {
-                "its blades are other ones, whose rest the section on segments and root compares"
-            } else if free && !keeps_body_step(scene, method) {
-                "it steps the bodies otherwise, and free bodies would go another way"
-            } else {
-                planned.methods.push(method);
-                continue;
-            };
-            planned.left_out.push(LeftOut {
-                method: method.name,
-                why,
-            });
-        }
-        planned
-    }
-}
-
-/// The methods of the quick report.
-pub fn quick_methods() -> Vec<&'static NamedMethod> {
-    let quick = METHODS.iter().filter(|m| !NOT_QUICK.contains(&m.name));
-    quick.collect()
-}
-
-/// Every method.
-pub fn all_methods() -> Vec<&'static NamedMethod> {
-    METHODS.iter().collect()
-}
-
-/// The methods whose cost is compared at equal sub-steps.
-pub fn cost_methods() -> Vec<&'static NamedMethod> {
-    COST_METHODS
-        .iter()
-        .filter_map(|name| method(name))
-        .collect()
-}
-
-/// Whether rapier moves any body of a scene, or its script may.
-pub fn has_free_bodies(scene: &Scene) -> bool {
-    let led = |motion: &Motion| matches!(motion, Motion::Fixed | Motion::Path { .. });
-    !scene.script.is_empty() || !scene.bodies.iter().all(|body| led(&body.motion))
-}
-
-fn keeps_body_step(scene: &Scene, method: &NamedMethod) -> bool {
-    let mut solver = scene.solver.clone();
-    method.apply(&mut solver);
-    let body_step_s = |s: &crate::scene::Solver| s.substep_s * f64::from(s.method.grass_steps);
-    (body_step_s(&solver) - body_step_s(&scene.solver)).abs() < 1e-12
-}
+/// Methods that are timed in turns: an interrupted report loses at most so many points, and the
+/// default runs once for so many.
+const TOGETHER: usize = 6;
 
 /// What a report came to.
 #[derive(Clone, Debug)]
@@ -155,6 +70,25 @@ pub struct SceneReport {
     pub floor: Row,
     pub rows: Vec<Row>,
     pub left_out: Vec<LeftOut>,
+}
+
+impl SceneReport {
+    /// The limits that one of its points misses.
+    pub fn misses(&self, row: &Row) -> Vec<&'static str> {
+        row.misses(&self.floor)
+    }
+
+    /// What the default costs on this machine when it is least disturbed, in milliseconds per
+    /// simulated second: the least of its times beside each of the other methods.
+    pub fn default_ms_per_s(&self) -> f64 {
+        let times = self.rows.iter().map(|row| row.default_ms_per_s);
+        times.reduce(f64::min).unwrap_or(0.0)
+    }
+
+    /// What a point costs, in milliseconds per simulated second; `None` without any work.
+    pub fn ms_per_s(&self, row: &Row) -> Option<f64> {
+        Some(row.times_default? * self.default_ms_per_s())
+    }
 }
 
 /// Why a report ended early. What was measured is in the file.
@@ -183,13 +117,15 @@ pub fn run(
     let adapter = gpu.and_then(Device::gpu).map(Adapter::of);
     let points = |planned: &Planned| TRUTH_POINTS + planned.methods.len() as f64;
     let total: f64 = plan.scenes.iter().map(points).sum();
+    let context = Context {
+        program: plan.program,
+        gpu,
+    };
     let mut done = 0.0;
     let mut scenes = Vec::new();
     for planned in &plan.scenes {
-        let share = |points: f64| (done + points) / total;
-        scenes.push(run_scene(planned, store, gpu, |points| {
-            progress(share(points));
-        })?);
+        let share = |points: f64| progress((done + points) / total);
+        scenes.push(run_scene(planned, store, &context, share)?);
         done += points(planned);
     }
     let timed = plan
@@ -214,40 +150,16 @@ pub fn run(
 fn run_scene(
     planned: &Planned,
     store: &mut Store,
-    gpu: Option<&Device>,
-    mut progress: impl FnMut(f64),
+    context: &Context<'_>,
+    progress: impl FnMut(f64),
 ) -> Result<SceneReport, AccuracyError> {
     let loaded = &planned.loaded;
-    let names = planned.methods.iter().map(|method| method.name);
-    let missing = std::iter::once(FLOOR)
-        .chain(names)
-        .any(|name| store.get(&key(loaded, name, gpu)).is_none());
-    if missing {
-        let truth = Truth::record(loaded, |share| progress(TRUTH_POINTS * share))?;
-        log::info!(
-            "{}: {:.1} MB of reference poses",
-            loaded.name,
-            truth.bytes() as f64 * 1e-6
-        );
-        let floor_key = key(loaded, FLOOR, gpu);
-        if store.get(&floor_key).is_none() {
-            let floor = measure::floor_row(loaded, &truth);
-            store.add(Row {
-                key: floor_key,
-                ..floor
-            })?;
-        }
-        for (n, method) in planned.methods.iter().enumerate() {
-            let key = key(loaded, method.name, gpu);
-            if store.get(&key).is_none() {
-                let row = measure::measure(loaded, method, &truth, gpu)?;
-                store.add(Row { key, ..row })?;
-            }
-            progress(TRUTH_POINTS + (n + 1) as f64);
-        }
+    let key = |name: &str| context.key(loaded, name);
+    if planned.names().any(|name| store.get(&key(name)).is_none()) {
+        measure_missing(planned, store, context, progress)?;
     }
     let rows = planned.methods.iter();
-    let row = |name| store.get(&key(loaded, name, gpu)).cloned();
+    let row = |name| store.get(&key(name)).cloned();
     Ok(SceneReport {
         name: loaded.name.clone(),
         what: loaded.scene.description.clone(),
@@ -258,23 +170,39 @@ fn run_scene(
     })
 }
 
-/// The key of a point: the same for the same program, scene, settings and device.
-fn key(loaded: &LoadedScene, name: &str, gpu: Option<&Device>) -> String {
-    let mut solver = loaded.scene.solver.clone();
-    if let Some(method) = method(name) {
-        method.apply(&mut solver);
+/// Measures the points of a scene that the store does not have.
+fn measure_missing(
+    planned: &Planned,
+    store: &mut Store,
+    context: &Context<'_>,
+    mut progress: impl FnMut(f64),
+) -> Result<(), AccuracyError> {
+    let loaded = &planned.loaded;
+    let truth = Truth::record(loaded, |share| progress(TRUTH_POINTS * share))?;
+    let megabytes = truth.bytes() as f64 * 1e-6;
+    log::info!("{}: {megabytes:.1} MB of reference poses", loaded.name);
+    let key = context.key(loaded, FLOOR);
+    if store.get(&key).is_none() {
+        let floor = measure::floor_row(loaded, &truth);
+        store.add(Row { key, ..floor })?;
     }
-    // A scene that was read can be written; one that could not would only share its key.
-    let scene = to_ron(&loaded.scene).unwrap_or_default();
-    let device = gpu.and_then(Device::gpu).map(Adapter::of);
-    let version = env!("CARGO_PKG_VERSION");
-    let truth = lane::REFERENCE_TABLE;
-    let whole = format!("{version}\n{name}\n{scene}\n{solver:?}\n{device:?}\n{truth:?}");
-    // FNV-1a.
-    let hash = whole.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    });
-    format!("{hash:016x}")
+    let missing = planned.methods.iter().copied();
+    let missing: Vec<_> = missing
+        .filter(|method| store.get(&context.key(loaded, method.name)).is_none())
+        .collect();
+    let mut done = TRUTH_POINTS + (planned.methods.len() - missing.len()) as f64;
+    for turn in missing.chunks(TOGETHER) {
+        let points = turn.len() as f64;
+        let rows = measure::measure(loaded, turn, &truth, context.gpu, |share| {
+            progress(done + share * points);
+        })?;
+        for row in rows {
+            let key = context.key(loaded, &row.method);
+            store.add(Row { key, ..row })?;
+        }
+        done += points;
+    }
+    Ok(())
 }
 
 fn half_blade_m(scene: &Scene) -> f64 {
@@ -285,18 +213,19 @@ fn half_blade_m(scene: &Scene) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::plan::tests::loaded;
     use super::*;
-    use crate::run::methods::ROOT_PAPER;
+    use crate::run::methods::method;
 
-    fn loaded() -> LoadedScene {
-        crate::scene::parse_scene(
-            "tiny",
-            r#"(duration_s: 0.1, terrain: (ground: Flat(size_m: (1, 1))),
-                grass: (density_per_m2: 16),
-                bodies: [(name: "ball", shape: Ball(radius_m: 0.2), position_m: (0, 0.2, 0), motion: Fixed)])"#,
-            &[],
-        )
-        .expect("a valid scene")
+    /// A report of scenes that were made up.
+    pub fn report_of(scenes: Vec<SceneReport>) -> Report {
+        Report {
+            machine: Machine::now(),
+            adapter: None,
+            scenes,
+            cost: Vec::new(),
+            blades: None,
+        }
     }
 
     #[test]
@@ -308,41 +237,25 @@ mod tests {
         };
         let mut store = Store::in_memory();
         run(&plan, &mut store, None, |_| {}).expect("a scene that runs");
-        let known = key(&loaded(), "default", None);
+        let as_now = Context {
+            program: 0,
+            gpu: None,
+        };
+        let known = as_now.key(&loaded(), "default");
         let marked = Row {
-            // No run takes so long.
-            ms_per_s: 1e30,
+            // No run has such strain.
+            strain: 1e30,
             ..store.get(&known).expect("a measured point").clone()
         };
         store.add(marked).expect("memory");
-        let again = run(&plan, &mut store, None, |_| {}).expect("a scene that runs");
-        let times: Vec<f64> = again.scenes[0]
-            .rows
-            .iter()
-            .map(|row| row.ms_per_s)
-            .collect();
-        assert!(times[0] == 1e30 && times[1] < 1e30, "{times:?}");
-    }
-
-    #[test]
-    fn every_method_of_the_quick_and_the_cost_table_has_a_name() {
-        for name in NOT_QUICK.iter().chain(&COST_METHODS) {
-            assert!(method(name).is_some(), "{name}");
-        }
-        assert_eq!(quick_methods().len() + NOT_QUICK.len(), METHODS.len());
-    }
-
-    #[test]
-    fn free_bodies_leave_out_other_body_steps_and_all_leave_out_other_blades() {
-        let names = |planned: &Planned| -> Vec<&str> {
-            planned.left_out.iter().map(|out| out.method).collect()
+        let strains = |plan: &Plan, store: &mut Store| -> Vec<bool> {
+            let report = run(plan, store, None, |_| {}).expect("a scene that runs");
+            let rows = report.scenes[0].rows.iter();
+            rows.map(|row| row.strain == 1e30).collect()
         };
-        let led = Planned::new(loaded(), &all_methods());
-        assert_eq!(names(&led), [ROOT_PAPER]);
-        let mut free = loaded();
-        free.scene.bodies[0].motion = Motion::Free;
-        let left_out = Planned::new(free, &all_methods());
-        assert!(names(&left_out).contains(&"substep-480"));
-        assert!(!names(&left_out).contains(&"grass-steps-4"));
+        assert_eq!(strains(&plan, &mut store), [true, false]);
+        // A program that is another one measures all of it again.
+        let rebuilt = Plan { program: 1, ..plan };
+        assert_eq!(strains(&rebuilt, &mut store), [false, false]);
     }
 }

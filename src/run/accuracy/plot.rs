@@ -1,17 +1,26 @@
 //! Work-precision plots: error on x, time on y, both logarithmic, a curve per family of methods.
 
-use std::collections::BTreeMap;
-
 use plotters::coord::Shift;
-use plotters::coord::combinators::LogCoord;
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
 
+use super::measure::MOST_RMS_M;
 use super::summary::{BUDGET_MS_PER_S, MethodSummary};
-use super::{Report, SceneReport};
+use super::{Relative, Report, SceneReport};
 
-/// Pixels of a plot, and of the part at its right in which curves are named.
-const SIZE: (u32, u32) = (1200, 760);
-const LEGEND_WIDTH: u32 = 170;
+mod axes;
+mod labels;
+
+use axes::{Axes, LogAxis, Pixel, text};
+use labels::{Box2, LETTER_PX};
+
+/// Pixels of a plot, and of what lies around its axes: left, right with the names of the curves, top
+/// and bottom.
+const SIZE: (u32, u32) = (1280, 800);
+const MARGINS: [i32; 4] = [76, 180, 44, 60];
+/// Letters of a title that fit above the axes.
+const TITLE_LETTERS: usize = 110;
 /// Errors below this are drawn at it: a logarithm needs a number above 0.
 const LEAST_MM: f64 = 1e-4;
 const LEAST_MS: f64 = 1e-2;
@@ -30,14 +39,38 @@ struct Point {
     /// The error in the worst scene, where there are several.
     worst_mm: Option<f64>,
     ms_per_s: f64,
+    /// The range that the time is known to.
+    ms_range: [f64; 2],
     failed: bool,
 }
 
-/// Lines of a plot, in millimetres.
-struct Lines {
+/// What a plot shows besides its points.
+struct About {
+    title: String,
     half_blade_mm: f64,
     floor_mm: Option<f64>,
+    /// Methods that have no finite error or no time, and so no place.
+    missing: Vec<String>,
 }
+
+/// Families of methods that differ in more than a knob: no line joins their points.
+const NO_KNOB: [&str; 3] = ["default", "literal", "recovery"];
+
+/// Colours that are told apart on white, also by most who see few colours.
+const COLOURS: [RGBColor; 12] = [
+    RGBColor(0, 0, 0),
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 140, 100),
+    RGBColor(170, 60, 140),
+    RGBColor(150, 110, 0),
+    RGBColor(60, 60, 190),
+    RGBColor(200, 30, 30),
+    RGBColor(70, 120, 20),
+    RGBColor(110, 80, 60),
+    RGBColor(0, 150, 190),
+    RGBColor(120, 120, 120),
+];
 
 /// The plot of a scene, as SVG.
 ///
@@ -46,21 +79,26 @@ struct Lines {
 /// What the plotting crate refuses.
 pub fn error_plot(scene: &SceneReport) -> Result<String, PlotError> {
     let point = |row: &super::Row| {
+        let ms_per_s = scene.ms_per_s(row)?;
         Some(Point {
             method: row.method.clone(),
             family: row.family.clone(),
             error_mm: row.rms_m? * 1e3,
             worst_mm: None,
-            ms_per_s: row.ms_per_s,
-            failed: !row.misses().is_empty(),
+            ms_per_s,
+            ms_range: range_ms(row.relative(), ms_per_s),
+            failed: !scene.misses(row).is_empty(),
         })
     };
     let points: Vec<Point> = scene.rows.iter().filter_map(point).collect();
-    let lines = Lines {
+    let names = scene.rows.iter().map(|row| row.method.as_str());
+    let about = About {
+        title: format!("{}: {}", scene.name, scene.what),
         half_blade_mm: scene.half_blade_m * 1e3,
         floor_mm: scene.floor.rms_m.map(|m| m * 1e3),
+        missing: missing(names, &points),
     };
-    draw(&format!("{}: {}", scene.name, scene.what), &points, &lines)
+    draw(&points, &about)
 }
 
 /// The plot over all scenes: the mean error, and a thin line to that of the worst scene.
@@ -76,154 +114,269 @@ pub fn summary_plot(report: &Report) -> Result<String, PlotError> {
             error_mm: m.mean_rms_m? * 1e3,
             worst_mm: m.worst_rms_m.map(|worst| worst * 1e3),
             ms_per_s: m.mean_ms_per_s,
+            ms_range: range_ms(m.relative, m.mean_ms_per_s),
             failed: !m.misses.is_empty(),
         })
     };
-    let points: Vec<Point> = report.summary().iter().filter_map(point).collect();
-    let lines = Lines {
+    let summary = report.summary();
+    let points: Vec<Point> = summary.iter().filter_map(point).collect();
+    let about = About {
+        title: "Mean error over the scenes; thin lines lead to the worst scene (hollow)".into(),
         half_blade_mm: report.half_blade_m() * 1e3,
         floor_mm: report.floor_m().map(|m| m * 1e3),
+        missing: missing(summary.iter().map(|m| m.method.as_str()), &points),
     };
-    let title = "Mean over the scenes; thin lines lead to the worst scene (hollow)";
-    draw(title, &points, &lines)
+    draw(&points, &about)
+}
+
+fn range_ms(relative: Option<Relative>, ms_per_s: f64) -> [f64; 2] {
+    match relative {
+        Some(Relative { median, low, high }) if median > 0.0 => {
+            [low, high].map(|times| ms_per_s * times / median)
+        }
+        _ => [ms_per_s; 2],
+    }
+}
+
+fn missing<'a>(names: impl Iterator<Item = &'a str>, points: &[Point]) -> Vec<String> {
+    let absent = names.filter(|name| !points.iter().any(|point| point.method == *name));
+    absent.map(str::to_owned).collect()
 }
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
+type DrawResult = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-fn draw(title: &str, points: &[Point], lines: &Lines) -> Result<String, PlotError> {
+fn draw(points: &[Point], about: &About) -> Result<String, PlotError> {
     let mut svg = String::new();
     {
         let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
-        drawn(&area, title, points, lines).map_err(|error| PlotError(error.to_string()))?;
-        area.present()
-            .map_err(|error| PlotError(error.to_string()))?;
+        let failed = |error: DrawingAreaErrorKind<_>| PlotError(error.to_string());
+        drawn(&area, points, about).map_err(failed)?;
+        area.present().map_err(failed)?;
     }
     Ok(svg)
 }
 
-type DrawResult = Result<(), DrawingAreaErrorKind<std::io::Error>>;
-
-fn drawn(area: &Area<'_>, title: &str, points: &[Point], lines: &Lines) -> DrawResult {
+fn drawn(area: &Area<'_>, points: &[Point], about: &About) -> DrawResult {
     area.fill(&WHITE)?;
-    let (left_area, right_area) = area.split_horizontally(SIZE.0 - LEGEND_WIDTH);
-    let errors = points.iter().flat_map(|p| [Some(p.error_mm), p.worst_mm]);
-    let marks = [Some(lines.half_blade_mm), lines.floor_mm];
-    let (left, right) = span(errors.chain(marks).flatten(), LEAST_MM);
-    let times = points.iter().map(|p| p.ms_per_s);
-    let (low, high) = span(times.chain([BUDGET_MS_PER_S]), LEAST_MS);
-    let mut chart = ChartBuilder::on(&left_area)
-        .caption(title, ("sans-serif", 20))
-        .margin(12)
-        .x_label_area_size(48)
-        .y_label_area_size(64)
-        .build_cartesian_2d((left..right).log_scale(), (low..high).log_scale())?;
-    chart
-        .configure_mesh()
-        .x_desc("pose error to the reference, RMS, mm")
-        .y_desc("collide and relax, ms per simulated second")
-        .x_label_formatter(&|x| short(*x))
-        .y_label_formatter(&|y| short(*y))
-        .label_style(("sans-serif", 14))
-        .draw()?;
-    let vertical = |x: f64| vec![(x.max(LEAST_MM), low), (x.max(LEAST_MM), high)];
-    let level = vec![(left, BUDGET_MS_PER_S), (right, BUDGET_MS_PER_S)];
-    let mut legend = vec![
-        ("½ blade width".to_owned(), RED.to_rgba()),
-        ("frame budget".to_owned(), BLUE.to_rgba()),
-    ];
-    dashed(&mut chart, vertical(lines.half_blade_mm), RED.to_rgba())?;
-    dashed(&mut chart, level, BLUE.to_rgba())?;
-    if let Some(floor_mm) = lines.floor_mm {
-        dashed(&mut chart, vertical(floor_mm), BLACK.mix(0.5))?;
-        legend.push(("noise floor".to_owned(), BLACK.mix(0.5)));
-    }
-    for (number, (family, curve)) in families(points).into_iter().enumerate() {
-        let colour = Palette99::pick(number).to_rgba();
-        draw_family(&mut chart, &curve, colour)?;
-        legend.push((family, colour));
-    }
-    draw_legend(&right_area, &legend)
-}
-
-fn draw_legend(area: &Area<'_>, entries: &[(String, RGBAColor)]) -> DrawResult {
-    let words = |text: &str, y: i32| {
-        Text::new(text.to_owned(), (24, y - 7), ("sans-serif", 14).into_font())
+    let axes = axes_of(points, about);
+    let title: String = about.title.chars().take(TITLE_LETTERS).collect();
+    let cut = if title.len() < about.title.len() {
+        "…"
+    } else {
+        ""
     };
-    let mut y = 60;
-    for (name, colour) in entries {
-        let sample = PathElement::new([(0, y), (18, y)], colour.stroke_width(2));
-        area.draw(&sample)?;
-        area.draw(&words(name, y))?;
-        y += 22;
+    let middle = ((axes.left() + axes.right()) / 2, 12);
+    area.draw(&text(
+        &format!("{title}{cut}"),
+        middle,
+        18,
+        HPos::Center,
+        VPos::Top,
+    ))?;
+    axes.draw(
+        area,
+        "pose error to the reference, RMS, mm",
+        "collide and relax on the cpu, ms per simulated second",
+    )?;
+    let mut taken = guides(area, &axes, about)?;
+    let mut legend = Vec::new();
+    for (number, (family, curve)) in families(points).into_iter().enumerate() {
+        let style = Style::of(number);
+        draw_family(area, &axes, &curve, style)?;
+        legend.push((family, style));
     }
-    y += 12;
-    area.draw(&Circle::new((9, y), 4, BLACK.filled()))?;
-    area.draw(&words("meets every limit", y))?;
-    area.draw(&Cross::new((9, y + 22), 5, BLACK.stroke_width(2)))?;
-    area.draw(&words("misses a limit", y + 22))
+    let worst = points
+        .iter()
+        .filter_map(|p| Some((p.worst_mm?, p.ms_per_s)));
+    taken.extend(worst.map(|(x, y)| Box2::around(pixel(&axes, x, y))));
+    let named = points
+        .iter()
+        .map(|p| (pixel(&axes, p.error_mm, p.ms_per_s), p.method.clone()));
+    let named: Vec<(Pixel, String)> = named.collect();
+    for label in labels::place(&named, &axes, &taken) {
+        if label.needs_line {
+            let line = [label.point, label.anchor()];
+            area.draw(&PathElement::new(line, BLACK.mix(0.35)))?;
+        }
+        let corner = (label.place.left, label.place.top);
+        area.draw(&text(
+            &label.words,
+            corner,
+            LETTER_PX,
+            HPos::Left,
+            VPos::Top,
+        ))?;
+    }
+    draw_legend(area, &axes, &legend, about)
 }
 
-/// The points of each family, in the order of its knob, which is that of the list of methods.
-fn families(points: &[Point]) -> BTreeMap<String, Vec<&Point>> {
-    let mut families: BTreeMap<String, Vec<&Point>> = BTreeMap::new();
+fn axes_of(points: &[Point], about: &About) -> Axes {
+    let [left, right, top, bottom] = MARGINS;
+    let (width, height) = (SIZE.0 as i32, SIZE.1 as i32);
+    let errors = points.iter().flat_map(|p| [Some(p.error_mm), p.worst_mm]);
+    let guides = [
+        Some(about.half_blade_mm),
+        about.floor_mm,
+        Some(MOST_RMS_M * 1e3),
+    ];
+    let errors = errors.chain(guides).flatten().map(|mm| mm.max(LEAST_MM));
+    let times = points.iter().map(|p| p.ms_per_s).chain([BUDGET_MS_PER_S]);
+    Axes {
+        x: LogAxis::around(errors, left, width - right),
+        y: LogAxis::around(times.map(|ms| ms.max(LEAST_MS)), height - bottom, top),
+    }
+}
+
+fn pixel(axes: &Axes, error_mm: f64, ms_per_s: f64) -> Pixel {
+    axes.pixel(error_mm.max(LEAST_MM), ms_per_s.max(LEAST_MS))
+}
+
+/// Draws the lines of limits with their names, each at a height of its own, and tells where those
+/// are.
+fn guides(area: &Area<'_>, axes: &Axes, about: &About) -> Result<Vec<Box2>, DrawError> {
+    let limit_mm = MOST_RMS_M * 1e3;
+    let mut upright = vec![
+        (about.half_blade_mm, "½ blade width"),
+        (limit_mm, "limit of poses"),
+    ];
+    upright.extend(about.floor_mm.map(|mm| (mm, "noise floor")));
+    let mut taken = Vec::new();
+    for (n, (error_mm, what)) in upright.into_iter().enumerate() {
+        let x = axes.x.pixel(error_mm.max(LEAST_MM));
+        dashed(area, [(x, axes.bottom()), (x, axes.top())])?;
+        let words = format!("{what} {error_mm:.2} mm");
+        taken.push(name_guide(
+            area,
+            &words,
+            (x + 4, axes.top() + 4 + 16 * n as i32),
+        )?);
+    }
+    let y = axes.y.pixel(BUDGET_MS_PER_S);
+    dashed(area, [(axes.left(), y), (axes.right(), y)])?;
+    let words = format!("frame budget {BUDGET_MS_PER_S} ms per s");
+    taken.push(name_guide(area, &words, (axes.left() + 4, y - 15))?);
+    Ok(taken)
+}
+
+type DrawError = DrawingAreaErrorKind<std::io::Error>;
+
+fn name_guide(area: &Area<'_>, words: &str, corner: Pixel) -> Result<Box2, DrawError> {
+    area.draw(&text(words, corner, LETTER_PX, HPos::Left, VPos::Top))?;
+    Ok(Box2::of_words(words, corner))
+}
+
+fn dashed(area: &Area<'_>, ends: [Pixel; 2]) -> DrawResult {
+    let line = DashedPathElement::new(ends, 6, 4, BLACK.mix(0.6));
+    area.draw(&line)
+}
+
+/// How a family looks: past the last colour they come again with other marks.
+#[derive(Clone, Copy, Debug)]
+struct Style {
+    colour: RGBColor,
+    square: bool,
+}
+
+impl Style {
+    fn of(number: usize) -> Self {
+        Self {
+            colour: COLOURS[number % COLOURS.len()],
+            square: (number / COLOURS.len()) % 2 == 1,
+        }
+    }
+
+    /// A point that meets every limit, or misses one.
+    fn mark(self, area: &Area<'_>, (x, y): Pixel, failed: bool) -> DrawResult {
+        let colour = self.colour;
+        match (failed, self.square) {
+            (true, false) => area.draw(&Cross::new((x, y), 5, colour.stroke_width(2))),
+            (true, true) => area.draw(&TriangleMarker::new((x, y), 6, colour.stroke_width(2))),
+            (false, false) => area.draw(&Circle::new((x, y), 5, colour.filled())),
+            (false, true) => {
+                let corners = [(x - 4, y - 4), (x + 4, y + 4)];
+                area.draw(&Rectangle::new(corners, colour.filled()))
+            }
+        }
+    }
+}
+
+/// The points of each family in the order of the list of methods, which is that of its knob.
+fn families(points: &[Point]) -> Vec<(String, Vec<&Point>)> {
+    let mut families: Vec<(String, Vec<&Point>)> = Vec::new();
     for point in points {
-        families
-            .entry(point.family.clone())
-            .or_default()
-            .push(point);
+        match families.iter_mut().find(|(name, _)| *name == point.family) {
+            Some((_, curve)) => curve.push(point),
+            None => families.push((point.family.clone(), vec![point])),
+        }
     }
     families
 }
 
-fn dashed(chart: &mut Chart<'_, '_>, points: Vec<(f64, f64)>, colour: RGBAColor) -> DrawResult {
-    let series = DashedLineSeries::new(points, 6, 4, colour.stroke_width(1));
-    chart.draw_series(series)?;
-    Ok(())
-}
-
-fn draw_family(chart: &mut Chart<'_, '_>, points: &[&Point], colour: RGBAColor) -> DrawResult {
-    let place = |p: &Point| (p.error_mm.max(LEAST_MM), p.ms_per_s.max(LEAST_MS));
-    let curve = points.iter().map(|p| place(p));
-    chart.draw_series(LineSeries::new(curve, colour.stroke_width(2)))?;
+fn draw_family(area: &Area<'_>, axes: &Axes, points: &[&Point], style: Style) -> DrawResult {
+    let place = |p: &&Point| pixel(axes, p.error_mm, p.ms_per_s);
+    let has_knob = points
+        .first()
+        .is_some_and(|p| !NO_KNOB.contains(&p.family.as_str()));
+    if has_knob {
+        let curve: Vec<Pixel> = points.iter().map(place).collect();
+        area.draw(&PathElement::new(
+            curve,
+            style.colour.mix(0.7).stroke_width(2),
+        ))?;
+    }
     for point in points {
         let (x, y) = place(point);
+        let [low, high] = point.ms_range.map(|ms| axes.y.pixel(ms.max(LEAST_MS)));
+        area.draw(&PathElement::new([(x, low), (x, high)], style.colour))?;
         if let Some(worst_mm) = point.worst_mm {
-            let worst = (worst_mm.max(LEAST_MM), y);
-            let thin = colour.mix(0.4);
-            chart.draw_series(LineSeries::new([(x, y), worst], thin))?;
-            chart.draw_series([Circle::new(worst, 3, colour)])?;
+            let worst = pixel(axes, worst_mm, point.ms_per_s);
+            area.draw(&PathElement::new([(x, y), worst], style.colour.mix(0.3)))?;
+            area.draw(&Circle::new(worst, 3, style.colour))?;
         }
-        if point.failed {
-            chart.draw_series([Cross::new((x, y), 5, colour.stroke_width(2))])?;
-        } else {
-            chart.draw_series([Circle::new((x, y), 4, colour.filled())])?;
-        }
-        let label = ("sans-serif", 12).into_font().color(&BLACK.mix(0.7));
-        let above = EmptyElement::at((x, y)) + Text::new(point.method.clone(), (5, -12), label);
-        chart.draw_series([above])?;
+        style.mark(area, (x, y), point.failed)?;
     }
     Ok(())
 }
 
-/// The least and the largest of these numbers with some room around them.
-fn span(values: impl Iterator<Item = f64>, least: f64) -> (f64, f64) {
-    let clamped = values.map(|v| v.max(least));
-    let (low, high) = clamped.fold((f64::INFINITY, 0.0_f64), |(low, high), v| {
-        (low.min(v), high.max(v))
-    });
-    if low > high {
-        return (least, 1.0);
+fn draw_legend(
+    area: &Area<'_>,
+    axes: &Axes,
+    families: &[(String, Style)],
+    about: &About,
+) -> DrawResult {
+    let left = axes.right() + 14;
+    let mut y = axes.top() + 10;
+    let mut words = |row_px: i32, words: &str| {
+        let at = (left + 26, y);
+        y += row_px;
+        area.draw(&text(words, at, 14, HPos::Left, VPos::Center))?;
+        Ok::<i32, DrawError>(at.1)
+    };
+    for (family, style) in families {
+        let y = words(22, family)?;
+        let sample = [(left, y), (left + 18, y)];
+        area.draw(&PathElement::new(sample, style.colour.stroke_width(2)))?;
+        style.mark(area, (left + 9, y), false)?;
     }
-    (low / 1.5, high * 2.0)
-}
-
-fn short(value: f64) -> String {
-    if value >= 0.01 {
-        format!("{value}")
-    } else {
-        format!("{value:.0e}")
+    words(12, "")?;
+    let plain = Style::of(0);
+    let y = words(22, "meets every limit")?;
+    plain.mark(area, (left + 9, y), false)?;
+    let y = words(22, "misses a limit")?;
+    plain.mark(area, (left + 9, y), true)?;
+    let y = words(22, "time known to")?;
+    area.draw(&PathElement::new(
+        [(left + 9, y - 7), (left + 9, y + 7)],
+        BLACK,
+    ))?;
+    if !about.missing.is_empty() {
+        words(18, "without a place:")?;
     }
+    for method in &about.missing {
+        words(18, method)?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -239,7 +392,10 @@ mod tests {
             method: method.name.into(),
             family: method.family.into(),
             rms_m: Some(1e-4 * f64::from(n)),
-            ms_per_s: 200.0 / f64::from(n),
+            times_default: Some(2.0 / f64::from(n)),
+            times_default_low: Some(1.5 / f64::from(n)),
+            times_default_high: Some(2.5 / f64::from(n)),
+            default_ms_per_s: 100.0,
             strain: if n % 3 == 0 { 0.5 } else { 0.0 },
             touched_plants: 10,
             ..Row::default()
@@ -263,7 +419,12 @@ mod tests {
         let svg = error_plot(&scene()).expect("a plot");
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
         let texts = METHODS.iter().flat_map(|m| [m.name, m.family]);
-        for text in texts.chain(["½ blade width", "frame budget", "noise floor"]) {
+        for text in texts.chain([
+            "½ blade width",
+            "limit of poses",
+            "frame budget",
+            "noise floor",
+        ]) {
             assert!(svg.contains(text), "{text}");
         }
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
@@ -274,10 +435,19 @@ mod tests {
         let mut scene = scene();
         for row in &mut scene.rows {
             row.rms_m = Some(0.0);
-            row.ms_per_s = 0.0;
+            row.times_default = Some(0.0);
         }
         assert!(error_plot(&scene).is_ok());
         scene.rows.clear();
         assert!(error_plot(&scene).is_ok());
+    }
+
+    #[test]
+    fn a_method_without_a_finite_error_is_named_beside_the_plot() {
+        let mut scene = scene();
+        scene.rows[1].rms_m = None;
+        let svg = error_plot(&scene).expect("a plot");
+        assert!(svg.contains("without a place"), "it would be missed");
+        assert!(svg.contains(METHODS[1].name));
     }
 }

@@ -1,28 +1,33 @@
 //! The points of a report as rows of a CSV file, each written as soon as it is measured, so that a
 //! report that was interrupted goes on where it was.
 
-use std::collections::BTreeMap;
-use std::fs::{File, OpenOptions};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::io::{self, Write};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::{FLOOR, Plan};
+
 /// One method on one scene. Lengths are in metres.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Row {
-    /// Hash of the program's version, the scene and the solver's settings: another one is another
-    /// point.
+    /// Hash of the program, the scene, the solver's settings and the graphics device: another one is
+    /// another point.
     pub key: String,
     pub scene: String,
     pub method: String,
     pub family: String,
     pub substep_s: f64,
-    /// Collide and relax on the cpu engine: median of the sub-steps in which a body was near grass.
-    pub ms_per_substep: f64,
-    /// The same over the length of a sub-step, in milliseconds per simulated second.
-    pub ms_per_s: f64,
+    /// Time of collide and relax on the cpu engine over that of the default in the same frames, and
+    /// the range it is known to; `None` where no body was near grass.
+    pub times_default: Option<f64>,
+    pub times_default_low: Option<f64>,
+    pub times_default_high: Option<f64>,
+    /// What the default took beside it, in milliseconds per simulated second.
+    pub default_ms_per_s: f64,
     /// Pose errors to the reference over touched plants; `None` if not finite.
     pub rms_m: Option<f64>,
     pub p95_m: Option<f64>,
@@ -52,14 +57,16 @@ pub struct Row {
 }
 
 /// Columns in the order they are written, which are the keys of [`Row`].
-const COLUMNS: [&str; 25] = [
+const COLUMNS: [&str; 27] = [
     "key",
     "scene",
     "method",
     "family",
     "substep_s",
-    "ms_per_substep",
-    "ms_per_s",
+    "times_default",
+    "times_default_low",
+    "times_default_high",
+    "default_ms_per_s",
     "rms_m",
     "p95_m",
     "rms_lengths",
@@ -118,13 +125,60 @@ impl Row {
     }
 }
 
+/// What a file of rows holds, before it is opened for writing.
+#[derive(Debug, Default)]
+pub struct Stored {
+    rows: Vec<Row>,
+    /// Lines that are no rows, which are measured again.
+    pub broken_lines: usize,
+}
+
+impl Stored {
+    /// Reads a file of rows; one that is not there yet has none.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be read.
+    pub fn read(path: &Path) -> io::Result<Self> {
+        let text = match fs::read_to_string(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
+            read => read?,
+        };
+        // A line without an end may have lost digits of its last number.
+        let (whole, cut) = text.split_at(text.rfind('\n').map_or(0, |at| at + 1));
+        let lines: Vec<&str> = whole.lines().filter(|line| *line != header()).collect();
+        let rows: Vec<Row> = lines.iter().filter_map(|line| Row::parse(line)).collect();
+        Ok(Self {
+            broken_lines: lines.len() - rows.len() + usize::from(!cut.is_empty()),
+            rows,
+        })
+    }
+
+    /// Scenes with the methods that a plan leaves out: a report of that plan would lose them.
+    pub fn left_out_by(&self, plan: &Plan) -> BTreeMap<String, Vec<String>> {
+        let mut left_out: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for row in self.rows.iter().filter(|row| !plan.asks_for(row)) {
+            let methods = left_out.entry(row.scene.clone()).or_default();
+            if row.method != FLOOR && !methods.contains(&row.method) {
+                methods.push(row.method.clone());
+            }
+        }
+        left_out
+    }
+
+    /// Keeps the rows of these keys, and tells how many others there were.
+    pub fn keep(&mut self, keys: &BTreeSet<String>) -> usize {
+        let before = self.rows.len();
+        self.rows.retain(|row| keys.contains(&row.key));
+        before - self.rows.len()
+    }
+}
+
 /// Rows by key, and the file they are kept in, if any.
 #[derive(Debug, Default)]
 pub struct Store {
     file: Option<File>,
     rows: BTreeMap<String, Row>,
-    /// Lines of the file that are no rows, which are measured again.
-    pub broken_lines: usize,
 }
 
 impl Store {
@@ -133,45 +187,21 @@ impl Store {
         Self::default()
     }
 
-    /// Opens a file of rows. With `resume` the rows it has are kept, else it starts empty.
+    /// Writes a file anew with the rows that were kept of it, and opens it for more.
     ///
     /// # Errors
     ///
-    /// A file that cannot be read or written.
-    pub fn open(path: &Path, resume: bool) -> io::Result<Self> {
-        let mut file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(path)?;
-        let mut text = String::new();
-        if resume {
-            file.read_to_string(&mut text)?;
-        }
-        // A line without an end may have lost digits of its last number.
-        let (whole, cut) = text.split_at(text.rfind('\n').map_or(0, |at| at + 1));
-        let lines: Vec<&str> = whole.lines().filter(|line| *line != header()).collect();
-        let rows: Vec<Row> = lines.iter().filter_map(|line| Row::parse(line)).collect();
+    /// A file that cannot be written.
+    pub fn create(path: &Path, kept: Stored) -> io::Result<Self> {
         let mut store = Self {
-            broken_lines: lines.len() - rows.len() + usize::from(!cut.is_empty()),
             rows: BTreeMap::new(),
-            file: Some(file),
+            file: Some(File::create(path)?),
         };
-        store.restart()?;
-        for row in rows {
+        store.write_line(&header())?;
+        for row in kept.rows {
             store.add(row)?;
         }
         Ok(store)
-    }
-
-    fn restart(&mut self) -> io::Result<()> {
-        if let Some(file) = &mut self.file {
-            file.set_len(0)?;
-            file.seek(SeekFrom::Start(0))?;
-            writeln!(file, "{}", header())?;
-        }
-        Ok(())
     }
 
     /// Adds a row, and writes it at once.
@@ -180,12 +210,16 @@ impl Store {
     ///
     /// The file's.
     pub fn add(&mut self, row: Row) -> io::Result<()> {
-        if let Some(file) = &mut self.file {
-            let line = row.line().map_err(io::Error::other)?;
-            file.write_all(format!("{line}\n").as_bytes())?;
-        }
+        self.write_line(&row.line().map_err(io::Error::other)?)?;
         self.rows.insert(row.key.clone(), row);
         Ok(())
+    }
+
+    fn write_line(&mut self, line: &str) -> io::Result<()> {
+        match &mut self.file {
+            Some(file) => file.write_all(format!("{line}\n").as_bytes()),
+            None => Ok(()),
+        }
     }
 
     pub fn get(&self, key: &str) -> Option<&Row> {
@@ -208,7 +242,7 @@ mod tests {
             method: "sweep-1/8".into(),
             family: "sweeps".into(),
             substep_s: 1.0 / 120.0,
-            ms_per_substep: 0.1 + 0.2,
+            default_ms_per_s: 0.1 + 0.2,
             rms_m: Some(1e-17),
             side_flips: 3,
             ..Row::default()
@@ -235,25 +269,53 @@ mod tests {
         assert_eq!(Row::parse(&line[..line.len() / 2]), None);
     }
 
+    /// A file of this test's own.
+    fn file(name: &str) -> std::path::PathBuf {
+        let folder =
+            std::env::temp_dir().join(format!("sward-store-{name}-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a writable temporary folder");
+        folder.join("points.csv")
+    }
+
+    fn removed(path: &Path) {
+        let folder = path.parent().expect("the test's own folder");
+        fs::remove_dir_all(folder).expect("the test's own folder");
+    }
+
     #[test]
     fn a_killed_report_keeps_its_whole_rows() {
-        let folder = std::env::temp_dir().join(format!("sward-store-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a writable temporary folder");
-        let path = folder.join("points.csv");
-        let mut store = Store::open(&path, false).expect("a writable file");
+        let path = file("killed");
+        let mut store = Store::create(&path, Stored::default()).expect("a writable file");
         store.add(row("a")).expect("a writable file");
         store.add(row("b")).expect("a writable file");
         drop(store);
-        let text = std::fs::read_to_string(&path).expect("the file");
+        let text = fs::read_to_string(&path).expect("the file");
         // Cut within the row, and before its end of line alone.
         for cut in [9, 1] {
-            std::fs::write(&path, &text[..text.len() - cut]).expect("a writable file");
-            let store = Store::open(&path, true).expect("the file");
+            fs::write(&path, &text[..text.len() - cut]).expect("a writable file");
+            let stored = Stored::read(&path).expect("the file");
+            assert_eq!(stored.broken_lines, 1);
+            let store = Store::create(&path, stored).expect("the file");
             assert_eq!(store.get("a"), Some(&row("a")));
-            assert_eq!((store.get("b"), store.broken_lines), (None, 1));
+            assert_eq!(store.get("b"), None);
         }
-        let fresh = Store::open(&path, false).expect("the file");
-        assert_eq!(fresh.get("a"), None);
-        std::fs::remove_dir_all(&folder).expect("the test's own folder");
+        removed(&path);
+    }
+
+    #[test]
+    fn points_of_other_keys_go_and_points_outside_of_the_plan_are_named() {
+        let path = file("keys");
+        let mut store = Store::create(&path, Stored::default()).expect("a writable file");
+        for key in ["a", "b"] {
+            store.add(row(key)).expect("a writable file");
+        }
+        let mut stored = Stored::read(&path).expect("the file");
+        let left_out = stored.left_out_by(&Plan::default());
+        assert_eq!(left_out["roll"], ["sweep-1/8"]);
+        assert_eq!(stored.keep(&BTreeSet::from(["b".to_owned()])), 1);
+        let store = Store::create(&path, stored).expect("the file");
+        assert_eq!((store.get("a"), store.get("b")), (None, Some(&row("b"))));
+        assert!(Stored::read(&path.with_extension("none")).is_ok());
+        removed(&path);
     }
 }
