@@ -360,11 +360,11 @@ fn draw_legend(
         style.mark(area, (left + 9, y), false)?;
     }
     words(12, "")?;
-    let plain = Style::of(0);
-    let y = words(22, "meets every limit")?;
-    plain.mark(area, (left + 9, y), false)?;
-    let y = words(22, "misses a limit")?;
-    plain.mark(area, (left + 9, y), true)?;
+    for (failed, meaning) in [(false, "meets every limit"), (true, "misses a limit")] {
+        let y = words(22, meaning)?;
+        Style::of(0).mark(area, (left + 3, y), failed)?;
+        Style::of(COLOURS.len()).mark(area, (left + 16, y), failed)?;
+    }
     let y = words(22, "time known to")?;
     area.draw(&PathElement::new(
         [(left + 9, y - 7), (left + 9, y + 7)],
