@@ -12,7 +12,8 @@ use sward::sim::measure::GrassState;
 
 use super::Measured;
 use super::rig::{
-    CALM, FRAME_TICKS, PlantKey, Rig, SECOND_TICKS, Setting, all_in_wind_pose, apart, ensure,
+    CALM, FRAME_TICKS, Handmade, PlantKey, Rig, SECOND_TICKS, Setting, all_in_wind_pose, apart,
+    ensure,
 };
 
 /// A plant at rest under a body moves no more than this per displayed frame, in metres.
@@ -227,14 +228,20 @@ pub fn degenerate_point_put_back(setting: &Setting) -> Measured {
     for &(what, shape, place) in DEGENERATE {
         let (mut rig, vertex) = with_vertex_at(setting, shape, place)?;
         let mut first = None;
+        let mut state = rig.state()?;
         for frame in 0..=STEADY_FRAMES {
-            put_back(&mut rig, vertex, frame)?;
+            put_back(&rig, &mut state, vertex, frame)?;
+            rig.take_over(&state)?;
             rig.ticks(FRAME_TICKS)?;
-            let face = faces(&mut rig)?.get(vertex).copied().unwrap_or(0);
+            state = rig.state()?;
             // The first frame finds the way out without a memory.
             if frame == 0 {
                 continue;
             }
+            let (slab, node) = place_of(&rig, vertex)?;
+            let face = state.slabs[slab]
+                .as_ref()
+                .map_or(0, |slab| slab.faces[node]);
             let first = *first.get_or_insert(face);
             ensure(face != 0 && face == first, || {
                 format!("{what}: face {face:x} in frame {frame}, {first:x} at first")
@@ -252,29 +259,34 @@ pub fn degenerate_point_put_back(setting: &Setting) -> Measured {
 /// below 2 m.
 const ASIDE_M: f64 = 5e-7;
 
+/// The number of the slab that a vertex of [`with_vertex_at`] is in, and its place there.
+fn place_of(rig: &Rig, vertex: usize) -> Result<(usize, usize), Failed> {
+    let segments = rig.meadow.scene.solver.segments as usize;
+    let per_slab = rig.meadow.field.grid.plants_per_tile() as usize * segments;
+    let tile = rig.meadow.work.tiles.get(vertex / per_slab);
+    let tile = tile.ok_or("the vertex is in no active tile")?;
+    Ok((tile.slab as usize, vertex % per_slab))
+}
+
 /// Puts the blade of a vertex into its wind pose, as if the body had left it there in this sub-step.
 /// The memory of its faces is wiped before the first frame alone.
-fn put_back(rig: &mut Rig, vertex: usize, frame: u32) -> Result<(), Failed> {
-    let mut state = rig.state()?;
-    let work = &rig.meadow.work;
+fn put_back(rig: &Rig, state: &mut Handmade, vertex: usize, frame: u32) -> Result<(), Failed> {
     let segments = rig.meadow.scene.solver.segments as usize;
-    let per_tile = rig.meadow.field.grid.plants_per_tile() as usize;
-    let (plant, node) = (vertex / segments, vertex % segments);
-    let slab = work.tiles[plant / per_tile].slab as usize;
+    let (slab, node) = place_of(rig, vertex)?;
     let slab = state.slabs[slab].as_mut().ok_or("the tile has no slab")?;
-    let place = plant % per_tile;
-    slab.touched_at[place] = work.now;
-    let nodes = place * segments..(place + 1) * segments;
+    let plant = node / segments;
+    slab.touched_at[plant] = rig.meadow.work.now;
+    let nodes = plant * segments..(plant + 1) * segments;
     slab.offsets[nodes.clone()].fill(Vec3::ZERO);
     let aside = |axis| {
         let word = philox2x32([frame, axis], 13, 7)[0];
         (2.0 * f64::from(unit(word)) - 1.0) * ASIDE_M
     };
-    slab.offsets[nodes.start + node] = Vec3::of([aside(0), aside(1), aside(2)]);
+    slab.offsets[node] = Vec3::of([aside(0), aside(1), aside(2)]);
     if frame == 0 {
         slab.faces[nodes].fill(0);
     }
-    rig.take_over(&state)
+    Ok(())
 }
 
 /// A fixed body placed so that the fifth node of some plant lies at `place` of the body, and the
