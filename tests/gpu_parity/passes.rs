@@ -111,7 +111,7 @@ impl Compared {
             return;
         }
         self.touched += 1;
-        let mistake_m = if place % MISTAKEN == 0 {
+        let mistake_m = if place.is_multiple_of(MISTAKEN) {
             self.mistake_m
         } else {
             0.0
