@@ -14,6 +14,7 @@ use crate::field::tiles::Changes;
 
 use super::cpu::{Grass, PassTimes};
 use super::meadow::{Counters, Meadow, ScriptState};
+use super::measure::GrassState;
 use super::slab::Slab;
 use super::state_hash::StateHash;
 use super::work::Work;
@@ -84,5 +85,20 @@ impl<R: Real> Checkpoint<R> {
         own.filter(|slab| Arc::strong_count(slab) == 1)
             .map(|slab| slab.bytes())
             .sum()
+    }
+}
+
+impl<R: Real> Grass<R> {
+    /// Takes over the state of another engine, or one made by hand, in the meadow's active tiles, so
+    /// that the next tick goes on from there. The twin of the gpu engine's `upload`.
+    pub fn take_over(&mut self, meadow: &Meadow, state: &impl GrassState<R>) {
+        let mut slabs = self.slabs().to_vec();
+        slabs.resize_with(meadow.tiles.slabs.high_water() as usize, || None);
+        for tile in &meadow.work.tiles {
+            if let Some(slab) = state.slab(tile.slab) {
+                slabs[tile.slab as usize] = Some(Arc::new(slab.clone()));
+            }
+        }
+        self.set_slabs(slabs);
     }
 }

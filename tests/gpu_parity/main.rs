@@ -33,10 +33,13 @@ const CHECKS: &[(&str, Check)] = &[
     ),
     ("cubes_of_closed_forms_agree", cubes::closed_forms_agree),
     ("hidden_faces_agree", cubes::hidden_faces_agree),
-    ("a_tick_agrees_with_cubes", passes::a_tick_agrees_with_cubes),
     (
-        "a_tick_agrees_with_closed_forms",
-        passes::a_tick_agrees_with_closed_forms,
+        "a_sweep_agrees_with_cubes",
+        passes::a_sweep_agrees_with_cubes,
+    ),
+    (
+        "a_sweep_agrees_with_closed_forms",
+        passes::a_sweep_agrees_with_closed_forms,
     ),
     (
         "every_kind_of_solid_agrees",

@@ -250,7 +250,7 @@ pub fn degenerate_plants(setting: &Setting) -> Measured {
     let count = refused.len();
     for (what, species, density) in refused {
         let scene = meadow_of(setting, species, density)?;
-        let told = match Rig::of_scene(setting.device, scene) {
+        let told = match setting.rig_of(scene) {
             Ok(_) => return Err(format!("{what}: accepted").into()),
             Err(error) => error.message().unwrap_or_default().to_owned(),
         };
@@ -273,7 +273,7 @@ pub fn degenerate_plants(setting: &Setting) -> Measured {
     ];
     let mut plants = Vec::new();
     for (what, species, density) in allowed {
-        let mut rig = Rig::of_scene(setting.device, meadow_of(setting, species, density)?)?;
+        let mut rig = setting.rig_of(meadow_of(setting, species, density)?)?;
         let run = rig.run_to(SECOND_TICKS / 2, 10);
         run.map_err(|error| format!("{what}: {}", error.message().unwrap_or_default()))?;
         plants.push(rig.plants()?.len());

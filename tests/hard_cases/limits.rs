@@ -97,7 +97,7 @@ pub fn bodies(setting: &Setting) -> Measured {
         told.clone()
     })?;
 
-    let mut rig = Rig::of_scene(setting.device, scene)?;
+    let mut rig = setting.rig_of(scene)?;
     rig.ticks(3)?;
     let before = (rig.meadow.bodies.hash(), rig.bits()?);
     let spawn = Action::Spawn(Box::new(ball.clone()));

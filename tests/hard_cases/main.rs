@@ -1,7 +1,8 @@
 //! The hard cases: what breaks a naive method, each with the limit it must keep. Every case runs
 //! on the cpu engine and on a graphics adapter, and, where bodies are involved, with depth cubes
 //! and with closed forms. Without an adapter the gpu trials are ignored, unless
-//! `SWARD_REQUIRE_GPU=1`. Every trial prints what it measured.
+//! `SWARD_REQUIRE_GPU=1`. Every trial prints what it measured. The trials `fault::` plant mistakes,
+//! each of which must turn one of the cases red.
 //!
 //! The long run of 24 simulated hours is not part of the test run:
 //! `cargo test --release --test hard_cases -- --ignored day`.
@@ -9,6 +10,7 @@
 #![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
 
 mod contact;
+mod faults;
 mod input;
 mod limits;
 mod long;
@@ -18,6 +20,7 @@ mod place;
 mod recovery;
 mod rig;
 mod shapes;
+mod springs;
 mod time;
 
 use std::sync::{Arc, Mutex, PoisonError};
@@ -41,8 +44,8 @@ struct Case {
 }
 
 const BOTH: &[Collider] = &[Collider::Cube, Collider::Analytic];
-/// For bodies that are too thin for a depth cube, which `auto` knows.
-const THIN: &[Collider] = &[Collider::Auto, Collider::Analytic];
+/// For bodies that are too thin for a depth cube: `auto` knows it and takes the closed form.
+const THIN: &[Collider] = &[Collider::Auto, Collider::Cube];
 const ALL: &[Collider] = &[Collider::Auto, Collider::Cube, Collider::Analytic];
 /// For cases in which no body has a part, or one is as good as another.
 const ANY: &[Collider] = &[Collider::Auto];
@@ -60,6 +63,11 @@ const CASES: &[Case] = &[
     case("rest_dropped", BOTH, contact::rest_dropped),
     case("rest_rolled", BOTH, contact::rest_rolled),
     case("degenerate_point", BOTH, contact::degenerate_point),
+    case(
+        "degenerate_point_put_back",
+        BOTH,
+        contact::degenerate_point_put_back,
+    ),
     case("buried", BOTH, contact::buried),
     case("roll_rates", BOTH, motion::roll_rates),
     case("roll_reference", BOTH, motion::roll_reference),
@@ -74,6 +82,8 @@ const CASES: &[Case] = &[
     case("release", BOTH, recovery::release),
     case("flattened", ANY, recovery::flattened),
     case("gusty_recovery", BOTH, recovery::gusty),
+    case("stiff_springs", BOTH, springs::stiff),
+    case("stretched", BOTH, springs::stretched),
     case("sharded", BOTH, order::sharded),
     case("order_of_bodies", BOTH, order::bodies),
     case("order_of_threads", BOTH, order::threads),
@@ -104,28 +114,26 @@ fn main() {
     let graphics = Arc::new(graphics.map_err(|error| error.to_string()));
     let skips_graphics = graphics.is_err() && !required;
 
-    let measured = Arc::new(Mutex::new(Vec::new()));
+    let told: Told = Arc::default();
     let mut trials = Vec::new();
     for (cases, named) in [(CASES, false), (NAMED, true)] {
-        for case in cases {
-            for &collider in case.colliders {
-                for (engine, device) in [("cpu", &processor), ("gpu", &graphics)] {
-                    let name = match collider {
-                        Collider::Auto => format!("{engine}::{}", case.name),
-                        Collider::Cube => format!("{engine}::{}::cube", case.name),
-                        Collider::Analytic => format!("{engine}::{}::analytic", case.name),
-                    };
-                    let (device, check, told) = (device.clone(), case.check, measured.clone());
-                    let ignored = named || (engine == "gpu" && skips_graphics);
-                    let title = name.clone();
-                    let run = move || run(&device, check, collider, &title, &told);
-                    trials.push(Trial::test(name, run).with_ignored_flag(ignored));
-                }
+        for (case, &collider) in cases
+            .iter()
+            .flat_map(|c| c.colliders.iter().map(move |k| (c, k)))
+        {
+            for (engine, device) in [("cpu", &processor), ("gpu", &graphics)] {
+                let title = title(engine, case, collider);
+                let (device, told, check) = (device.clone(), told.clone(), case.check);
+                let ignored = named || (engine == "gpu" && skips_graphics);
+                let name = title.clone();
+                let run = move || run(&device, check, collider, &title, &told);
+                trials.push(Trial::test(name, run).with_ignored_flag(ignored));
             }
         }
     }
+    trials.extend(faults::trials(&told));
     let conclusion = libtest_mimic::run(&arguments, trials);
-    let mut told = measured.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
     told.sort();
     for line in told.iter() {
         println!("{line}");
@@ -133,18 +141,39 @@ fn main() {
     conclusion.exit();
 }
 
+/// What the trials measured, a line each.
+type Told = Arc<Mutex<Vec<String>>>;
+
+fn title(engine: &str, case: &Case, collider: Collider) -> String {
+    let one = case.colliders.len() == 1;
+    match collider {
+        Collider::Auto if one => format!("{engine}::{}", case.name),
+        Collider::Auto => format!("{engine}::{}::auto", case.name),
+        Collider::Cube => format!("{engine}::{}::cube", case.name),
+        Collider::Analytic => format!("{engine}::{}::analytic", case.name),
+    }
+}
+
 fn run(
     device: &Result<Device, String>,
     check: Check,
     collider: Collider,
     title: &str,
-    told: &Mutex<Vec<String>>,
+    told: &Told,
 ) -> Result<(), Failed> {
     let device = device.as_ref().map_err(String::as_str)?;
     let started = std::time::Instant::now();
-    let measured = check(&Setting { device, collider })?;
+    let measured = check(&Setting {
+        device,
+        collider,
+        mistake: None,
+    })?;
+    tell(told, title, &measured, started);
+    Ok(())
+}
+
+fn tell(told: &Told, title: &str, measured: &str, started: std::time::Instant) {
     let seconds = started.elapsed().as_secs_f64();
     let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
     told.push(format!("{title}: {measured} ({seconds:.1} s)"));
-    Ok(())
 }

@@ -178,7 +178,7 @@ pub fn bodies(setting: &Setting) -> Measured {
             if reversed {
                 scene.bodies.reverse();
             }
-            let mut rig = Rig::of_scene(setting.device, scene)?;
+            let mut rig = setting.rig_of(scene)?;
             let hash = crowd_hash(&mut rig)?;
             let wanted = *wanted.get_or_insert(hash);
             ensure(hash == wanted, || {

@@ -7,7 +7,7 @@ use sward::scene::Scene;
 use sward::sim::measure::Standing;
 
 use super::Measured;
-use super::rig::{CALM, PlantKey, Rig, SECOND_TICKS, Setting, apart, ensure, parse};
+use super::rig::{CALM, PlantKey, SECOND_TICKS, Setting, apart, ensure, parse};
 
 /// A ball put 50 m away within one sub-step. A method that sweeps from the old place to the new
 /// one lays a furrow across the whole meadow.
@@ -110,7 +110,7 @@ fn displaced(
     ))?
     .scene;
     move_scene(&mut scene, by_m);
-    let mut rig = Rig::of_scene(setting.device, scene)?;
+    let mut rig = setting.rig_of(scene)?;
     rig.run_to(3 * SECOND_TICKS / 2, 12)?;
     rig.nothing_is_inside()?;
     rig.look()

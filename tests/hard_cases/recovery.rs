@@ -13,7 +13,7 @@ use sward::sim::slab::Slab;
 use sward::sim::weight::offset_weight;
 
 use super::Measured;
-use super::rig::{CALM, PlantKey, Rig, Setting, all_in_wind_pose, ensure};
+use super::rig::{CALM, Handmade, PlantKey, Rig, Setting, all_in_wind_pose, ensure};
 
 /// Recovery time of every case here, in seconds.
 const RECOVERY_S: f64 = 2.0;
@@ -22,7 +22,7 @@ const MARKS: [(f64, f64); 3] = [(0.5, 0.413), (0.1, 1.072), (0.01, 1.569)];
 const RATES_HZ: [f64; 6] = [15.0, 30.0, 60.0, 120.0, 240.0, 1000.0];
 
 /// A body that holds plants down for three sub-steps at least, and then is gone.
-fn held_down(setting: &Setting, wind: &str, substep_s: f64) -> Result<Rig, Failed> {
+pub fn held_down(setting: &Setting, wind: &str, substep_s: f64) -> Result<Rig, Failed> {
     let mut rig = setting.rig(&format!(
         "(duration_s: 10, terrain: (ground: Flat(size_m: (2, 2))), {wind}, bodies: [
             (name: \"ball\", shape: Ball(radius_m: 0.2), position_m: (0.05, 0.15, -0.05),
@@ -35,7 +35,7 @@ fn held_down(setting: &Setting, wind: &str, substep_s: f64) -> Result<Rig, Faile
     Ok(rig)
 }
 
-fn let_go(rig: &mut Rig) -> Result<(), Failed> {
+pub fn let_go(rig: &mut Rig) -> Result<(), Failed> {
     let body = "ball".to_owned();
     Ok(rig.meadow.act(&sward::scene::Action::Remove { body })?)
 }
@@ -105,7 +105,7 @@ fn largest_turn(plant: &Standing<f64>) -> f64 {
     turns.fold(0.0, f64::max)
 }
 
-fn segment<R: Real>(nodes: &[Vec3<R>], j: usize) -> Vec3<f64> {
+pub fn segment<R: Real>(nodes: &[Vec3<R>], j: usize) -> Vec3<f64> {
     Vec3::of(nodes[j + 1].to_f64()) - Vec3::of(nodes[j].to_f64())
 }
 
@@ -199,18 +199,7 @@ fn least_aside(shown: &Shown) -> f64 {
     aside.fold(f64::INFINITY, f64::min)
 }
 
-/// Slabs of a meadow made by hand.
-struct Turned {
-    slabs: Vec<Option<Slab<f32>>>,
-}
-
-impl GrassState<f32> for Turned {
-    fn slab(&self, slab: u32) -> Option<&Slab<f32>> {
-        self.slabs.get(slab as usize)?.as_ref()
-    }
-}
-
-impl Turned {
+impl Handmade {
     /// The same offsets, stored `age` ticks ago.
     fn aged(&self, meadow: &Meadow, age: u32) -> Self {
         // A stored tick of 0 means never; later ticks wrap below it, as their difference counts.
@@ -228,7 +217,7 @@ impl Turned {
 
 /// Every plant of the active tiles with its segments turned by an angle about z, which takes a
 /// blade's top towards +x.
-fn turned_state(meadow: &Meadow, degrees: f64) -> Turned {
+fn turned_state(meadow: &Meadow, degrees: f64) -> Handmade {
     let field = &meadow.field;
     let segments = field.table.segments as usize;
     let plants = field.grid.plants_per_tile();
@@ -255,18 +244,18 @@ fn turned_state(meadow: &Meadow, degrees: f64) -> Turned {
         }
         slabs[tile.slab as usize] = Some(slab);
     }
-    Turned { slabs }
+    Handmade { slabs }
 }
 
 /// A plant as the engine shows it.
-struct Shown {
-    nodes: Vec<Vec3<f32>>,
-    wind: Vec<Vec3<f32>>,
-    height_m: f64,
+pub struct Shown {
+    pub nodes: Vec<Vec3<f32>>,
+    pub wind: Vec<Vec3<f32>>,
+    pub height_m: f64,
 }
 
 /// What the engine shows of a state: the cpu engine's pose, or what the device draws.
-fn shown(rig: &mut Rig, state: &Turned) -> Result<Vec<Shown>, Failed> {
+pub fn shown(rig: &mut Rig, state: &Handmade) -> Result<Vec<Shown>, Failed> {
     let meadow = &rig.meadow;
     let field = &meadow.field;
     let segments = field.table.segments as usize;
@@ -358,7 +347,7 @@ fn drawn_as_untouched(rig: &mut Rig) -> Result<(), Failed> {
     let segments = meadow.field.table.segments as usize;
     let blank = Some(Slab::<f32>::new(plants, segments));
     let slabs = vec![blank; meadow.tiles.slabs.high_water() as usize];
-    engine.grass.upload(meadow, &Turned { slabs })?;
+    engine.grass.upload(meadow, &Handmade { slabs })?;
     engine.grass.recover()?;
     let untouched = bits(engine.grass.read_drawn(meadow)?);
     ensure(drawn == untouched, || {

@@ -6,9 +6,11 @@ use libtest_mimic::Failed;
 use sward::base::Vec3;
 use sward::field::TileId;
 use sward::run::{Device, Engine};
-use sward::scene::{Collider, LoadedScene, Scene, parse_scene};
+use sward::scene::{Collider, LoadedScene, Method, Scene, parse_scene};
 use sward::sim::Meadow;
-use sward::sim::measure::Standing;
+use sward::sim::fault::{Fault, Planted};
+use sward::sim::measure::{GrassState, Standing};
+use sward::sim::slab::Slab;
 
 /// No wind at all.
 pub const CALM: &str = "wind: (strength: 0, gust: 0, flutter: 0)";
@@ -24,6 +26,17 @@ const FARTHEST: f64 = 1.05;
 pub struct Setting<'a> {
     pub device: &'a Device,
     pub collider: Collider,
+    /// Made in every engine but the reference.
+    pub mistake: Option<Mistake>,
+}
+
+/// What a naive method does, in place of the default.
+#[derive(Clone, Copy)]
+pub enum Mistake {
+    /// Planted in the kernels of the cpu engine.
+    Planted(Fault),
+    /// A method of its own.
+    Method(fn(&mut Method)),
 }
 
 impl Setting<'_> {
@@ -38,7 +51,19 @@ impl Setting<'_> {
 
     /// A meadow from the text of a scene.
     pub fn rig(&self, text: &str) -> Result<Rig, Failed> {
-        Rig::new(self.device, parse(text)?)
+        self.rig_of(parse(text)?.scene)
+    }
+
+    /// A meadow from a scene without assets.
+    pub fn rig_of(&self, mut scene: Scene) -> Result<Rig, Failed> {
+        if let Some(Mistake::Method(change)) = self.mistake {
+            change(&mut scene.solver.method);
+        }
+        let mut rig = Rig::of_scene(self.device, scene)?;
+        if let Some(Mistake::Planted(fault)) = self.mistake {
+            rig.meadow.planted = Planted::plant(fault);
+        }
+        Ok(rig)
     }
 }
 
@@ -49,6 +74,18 @@ pub fn parse(text: &str) -> Result<LoadedScene, Failed> {
 
 pub fn ensure(holds: bool, says: impl FnOnce() -> String) -> Result<(), Failed> {
     if holds { Ok(()) } else { Err(says().into()) }
+}
+
+/// Slabs made by hand.
+#[derive(Clone, Debug, Default)]
+pub struct Handmade {
+    pub slabs: Vec<Option<Slab<f32>>>,
+}
+
+impl GrassState<f32> for Handmade {
+    fn slab(&self, slab: u32) -> Option<&Slab<f32>> {
+        self.slabs.get(slab as usize)?.as_ref()
+    }
 }
 
 /// A meadow with its engine, and the worst that was seen of it.
@@ -105,6 +142,27 @@ impl Rig {
             if self.meadow.ticks.is_multiple_of(every) {
                 self.look()?;
             }
+        }
+        Ok(())
+    }
+
+    /// A copy of the grass's state.
+    pub fn state(&self) -> Result<Handmade, Failed> {
+        let meadow = &self.meadow;
+        Ok(match &self.engine {
+            Engine::Cpu(grass) => Handmade::of(meadow, grass),
+            Engine::Gpu(engine) => Handmade::of(meadow, &engine.grass.read_state(meadow)?),
+            Engine::Reference(_) => return Err("the reference engine is in f64".into()),
+        })
+    }
+
+    /// The engine goes on from this state.
+    pub fn take_over(&mut self, state: &Handmade) -> Result<(), Failed> {
+        let meadow = &self.meadow;
+        match &mut self.engine {
+            Engine::Cpu(grass) => grass.take_over(meadow, state),
+            Engine::Gpu(engine) => engine.grass.upload(meadow, state)?,
+            Engine::Reference(_) => return Err("the reference engine is in f64".into()),
         }
         Ok(())
     }
@@ -183,6 +241,15 @@ impl Rig {
             plant.nodes.iter().for_each(|&node| hash.point(node));
         }
         Ok(hash.0)
+    }
+}
+
+impl Handmade {
+    fn of(meadow: &Meadow, state: &impl GrassState<f32>) -> Self {
+        let slabs = 0..meadow.tiles.slabs.high_water();
+        Self {
+            slabs: slabs.map(|slab| state.slab(slab).cloned()).collect(),
+        }
     }
 }
 

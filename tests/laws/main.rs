@@ -179,52 +179,107 @@ fn nothing_is_left_inside_and_nothing_is_stretched() {
     }
 }
 
-/// The kernels in f32 and f64 on the same bodies: what single precision costs. The ball alone, on
-/// flat ground: which way a blade gives under a box that lands flat on it, or on the crease of two
-/// triangles, is decided by less than rounding.
+/// What single precision costs in a scene: the kernels in f32 beside f64 on the same bodies.
+#[derive(Default)]
+struct Cost {
+    squares: f64,
+    nodes: u32,
+    plants: usize,
+    /// Plants that are touched on one side only, or slid to another side of a body.
+    flipped: usize,
+}
+
+/// A plant is on another side if a node stands further from its twin's than a blade's segment is long.
+const FLIPPED_M: f64 = 0.05;
+
+impl Cost {
+    fn of(loaded: &LoadedScene, ticks: u32) -> Self {
+        let (m32, g32) = run::<f32>(loaded, ticks);
+        let (m64, g64) = run::<f64>(loaded, ticks);
+        let (single, double) = (touched(&m32, &g32), touched(&m64, &g64));
+        let mut cost = Self {
+            plants: double.len(),
+            ..Self::default()
+        };
+        for (root, plant) in &double {
+            let nodes = single
+                .get(root)
+                .map(|other| other.nodes.iter().zip(&plant.nodes));
+            let off =
+                |(&a, &b): (&Vec3<f32>, &Vec3<f64>)| (Vec3::<f64>::of(a.to_f64()) - b).length();
+            let off: Option<Vec<f64>> = nodes.map(|nodes| nodes.map(off).collect());
+            match off {
+                Some(off) if off.iter().all(|&d| d <= FLIPPED_M) => {
+                    cost.squares += off.iter().map(|d| d * d).sum::<f64>();
+                    cost.nodes += off.len() as u32;
+                }
+                _ => cost.flipped += 1,
+            }
+        }
+        cost
+    }
+
+    fn rms_m(&self) -> f64 {
+        (self.squares / f64::from(self.nodes.max(1))).sqrt()
+    }
+}
+
+/// A ball rolls, a capsule is led along and turned: on flat and on rolling ground, met by their depth
+/// cubes and by their closed forms. A tenth of a millimetre is the limit between engines too.
+///
+/// Two contacts are left out, because which way a blade gives there is decided by less than rounding,
+/// and what is measured is how far the ways lie apart: a box that lands flat on its blades (3.6 to
+/// 5.8 mm RMS, 1 to 4 of 72 plants flipped), and the ball's cube on the creases of rolling ground
+/// (0.28 mm).
 #[test]
 fn single_precision_stays_within_a_tenth_of_a_millimetre() {
-    let mut loaded = scene(ROLL);
-    loaded.scene.bodies.retain(|body| body.name == "ball");
-    loaded.scene.terrain.ground = sward::scene::Ground::Flat {
-        size_m: [8.0, 6.0],
-        spacing_m: 1.0,
-    };
-    let (m32, g32) = run::<f32>(&loaded, 130);
-    let (m64, g64) = run::<f64>(&loaded, 130);
-    let (single, double) = (touched(&m32, &g32), touched(&m64, &g64));
-    let far = |a: Vec3<f32>, b: Vec3<f64>| (Vec3::<f64>::of(a.to_f64()) - b).length();
-    let mut squares = 0.0;
-    let mut nodes = 0;
-    let mut flipped = 0;
-    for (root, plant) in &double {
-        let Some(other) = single.get(root) else {
-            flipped += 1;
-            continue;
-        };
-        let pairs = other.nodes.iter().zip(&plant.nodes);
-        let distances: Vec<f64> = pairs.map(|(&a, &b)| far(a, b)).collect();
-        // A plant that slid to the other side of a body is a discrete event, counted apart.
-        if distances.iter().any(|&d| d > 0.05) {
-            flipped += 1;
-            continue;
+    let mut over = Vec::new();
+    for (body, collider, ground) in [
+        ("ball", "cube", FLAT),
+        ("ball", "analytic", FLAT),
+        ("ball", "analytic", ROLLING),
+        ("stick", "cube", FLAT),
+        ("stick", "analytic", FLAT),
+        ("stick", "cube", ROLLING),
+        ("stick", "analytic", ROLLING),
+    ] {
+        let text = PRECISE
+            .replace("GROUND", ground)
+            .replace("COLLIDER", collider);
+        let mut loaded = scene(&text);
+        loaded.scene.bodies.retain(|b| b.name == body);
+        let cost = Cost::of(&loaded, 130);
+        let what = format!(
+            "{body} by {collider} on {ground}: rms {:.1e} m over {} nodes, {} of {} plants flipped",
+            cost.rms_m(),
+            cost.nodes,
+            cost.flipped,
+            cost.plants
+        );
+        println!("{what}");
+        if cost.nodes < 1000 || cost.rms_m() > 1e-4 || cost.flipped * 100 > cost.plants {
+            over.push(what);
         }
-        squares += distances.iter().map(|d| d * d).sum::<f64>();
-        nodes += distances.len();
     }
-    let rms = (squares / f64::from(nodes.max(1) as u32)).sqrt();
-    println!(
-        "rms {rms:e} m over {nodes} nodes, {flipped} of {} plants flipped",
-        double.len()
-    );
-    assert!(nodes > 1000, "{nodes}");
-    assert!(rms <= 1e-4, "{rms:e} m");
-    assert!(
-        flipped * 100 <= double.len(),
-        "{flipped} of {}",
-        double.len()
-    );
+    assert!(over.is_empty(), "{over:#?}");
 }
+
+const FLAT: &str = "Flat(size_m: (8, 6))";
+const ROLLING: &str = "Rolling(size_m: (8, 6), amplitude_m: 0.1, wavelength_m: 7.0)";
+
+/// Two bodies that meet grass in two ways.
+const PRECISE: &str = r#"(
+    duration_s: 2.0,
+    terrain: (ground: GROUND),
+    wind: (strength: 0.1, gust: 0.1),
+    bodies: [
+        (name: "ball", shape: Ball(radius_m: 0.15), position_m: (-1.5, 0.16, 0.0), collider: COLLIDER,
+         above_ground: true, motion: Thrown(velocity_m_per_s: (2.0, 0.0, 0.0))),
+        (name: "stick", shape: Capsule(radius_m: 0.08, length_m: 0.6), collider: COLLIDER,
+         above_ground: true, motion: Path(waypoints: [(at_s: 0, position_m: (-1.5, 0.3, -1)),
+         (at_s: 1.2, position_m: (0.5, 0.2, -1), rotation_deg: (0, 60, 80))])),
+    ],
+)"#;
 
 /// Sub-steps of the reference in one of the scene's, and the finest, which is taken for true.
 const LEVELS: [u32; 4] = [1, 2, 4, 8];

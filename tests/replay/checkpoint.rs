@@ -9,6 +9,7 @@ const BUSY: &str = r#"(
     duration_s: 3.0,
     terrain: (ground: Rolling(size_m: (10, 10), amplitude_m: 0.1, wavelength_m: 7.0)),
     wind: (strength: 0.1, gust: 0.1),
+    grass: (density_per_m2: 64),
     solver: (recovery_s: 0.6),
     bodies: [
         (name: "car", shape: Vehicle(chassis_m: (0.6, 0.3, 1.1), wheel_radius_m: 0.18,
