@@ -172,18 +172,78 @@ fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, layi
     return pushed;
 }
 
-// `rate` is κΔt.
-fn bend_springs(rate: f32) {
-    let twice_a = 2.0 * rate / (1.0 + 2.0 * rate);
-    for (var j = 0u; j + 1u < field.segments; j++) {
-        let rest = length(wind_nodes[j + 2u] - wind_nodes[j]);
-        let across = nodes[j + 2u] - nodes[j];
-        let correction = unit_or(across, UP) * (twice_a * (length(across) - rest));
-        // The root is pinned: it has no responsibility, its partner has all of it.
-        let lower = select(0.5, 0.0, j == 0u);
-        nodes[j] += correction * lower;
-        nodes[j + 2u] -= correction * (1.0 - lower);
+// Bend springs, by 2a or by half, a quarter or an eighth of it where more would raise their energy
+// once the lengths are back; not at all where that would too. `rate` is κΔt.
+fn bend_springs(rate: f32, length: f32) {
+    let before = laid_energy(0.0, length);
+    var share = 2.0 * rate / (1.0 + 2.0 * rate);
+    for (var attempt = 0u; attempt < SPRING_TRIES; attempt++) {
+        if laid_energy(share, length) <= before {
+            pull_bends(share);
+            return;
+        }
+        share *= 0.5;
     }
+}
+
+// What the bend spring from node j to node j + 2 moves a free end by.
+fn bend_correction(j: u32, lower: vec3f, upper: vec3f, share: f32) -> vec3f {
+    let rest = length(wind_nodes[j + 2u] - wind_nodes[j]);
+    let across = upper - lower;
+    return unit_or(across, UP) * (share * (length(across) - rest));
+}
+
+// The root is pinned: it has no responsibility, its partner has all of it.
+fn lower_share(j: u32) -> f32 {
+    return select(0.5, 0.0, j == 0u);
+}
+
+fn pull_bends(share: f32) {
+    for (var j = 0u; j + 1u < field.segments; j++) {
+        let correction = bend_correction(j, nodes[j], nodes[j + 2u], share);
+        nodes[j] += correction * lower_share(j);
+        nodes[j + 2u] -= correction * (1.0 - lower_share(j));
+    }
+}
+
+// A blade's nodes, laid out from the root one after the other: the last but one, the last, and the
+// energy of the bends so far.
+struct Bends {
+    before: vec3f,
+    start: vec3f,
+    energy: f32,
+}
+
+fn add_bend(bends: ptr<function, Bends>, j: u32, node: vec3f, length_m: f32) {
+    if j == 0u {
+        return;
+    }
+    let start = (*bends).start;
+    let laid = start + unit_or(node - start, rest_direction(j - 1u)) * length_m;
+    if j >= 2u {
+        let rest = length(wind_nodes[j] - wind_nodes[j - 2u]);
+        let longer = length(laid - (*bends).before) - rest;
+        (*bends).energy += longer * longer;
+    }
+    (*bends).before = start;
+    (*bends).start = laid;
+}
+
+// The bends' energy after their springs have been pulled by a share and the lengths were restored;
+// neither is done to the nodes.
+fn laid_energy(share: f32, length_m: f32) -> f32 {
+    var bends = Bends(nodes[0], nodes[0], 0.0);
+    var lower = nodes[0];
+    var middle = nodes[1];
+    for (var j = 0u; j + 1u < field.segments; j++) {
+        let correction = bend_correction(j, lower, nodes[j + 2u], share);
+        add_bend(&bends, j, lower + correction * lower_share(j), length_m);
+        lower = middle;
+        middle = nodes[j + 2u] - correction * (1.0 - lower_share(j));
+    }
+    add_bend(&bends, field.segments - 1u, lower, length_m);
+    add_bend(&bends, field.segments, middle, length_m);
+    return bends.energy;
 }
 
 fn keep_above_ground(tile: TileRecord) {
@@ -212,7 +272,7 @@ fn respond(tile: TileRecord, reach: f32, done: u32, sweeps: u32, length: f32) ->
                 if !pushed {
                     break;
                 }
-                bend_springs(tick.bend / f32(sweeps));
+                bend_springs(tick.bend / f32(sweeps), length);
                 continue;
             }
             keep_above_ground(tile);

@@ -10,6 +10,7 @@
 use crate::sim::Meadow;
 use crate::sim::fault::Fault;
 use crate::sim::parts::Tested;
+use crate::sim::relax::SPRING_TRIES;
 use crate::sim::work::{Contact, TileWork};
 
 /// Most times that all loops of a dispatch together go round; what is left to the driver's limit is
@@ -41,7 +42,8 @@ impl PassTurns {
         let solver = &meadow.scene.solver;
         let (sweeps, per_node) = (most_sweeps(meadow), loops_per_node(meadow));
         let segments = u64::from(solver.segments);
-        let rounds = u64::from(solver.rounds[1]) + 1;
+        // The push, the springs' tries, and the rounds.
+        let rounds = u64::from(solver.rounds[1] + SPRING_TRIES) + 2;
         if meadow.planted.is(Fault::OneTurn) {
             return Self {
                 collide: Turns::new(sweeps, 1),

@@ -20,7 +20,7 @@ use crate::sim::collide::PINNED_M;
 use crate::sim::contact::FACE_MASK;
 use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIDDEN_M, HIT, LEAST_WEIGHT};
 use crate::sim::recover::ASIDE;
-use crate::sim::relax::{ON_GROUND_M, STICKS};
+use crate::sim::relax::{ON_GROUND_M, SPRING_TRIES, STICKS};
 use crate::sim::solid::{CAME_THROUGH_M, KEEP_FACE, NO_FACE, OPPOSITE, OUT_OF_REACH_M};
 
 /// A WGSL file, embedded, with the Rust constants it uses.
@@ -172,6 +172,7 @@ pub const PASSES: &[WgslFile] = &[
         NO_FACE,
         ON_GROUND_M,
         RELAX_GROUPS,
+        SPRING_TRIES,
         STICKS,
         WORKGROUP,
     ),
