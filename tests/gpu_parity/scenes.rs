@@ -29,6 +29,8 @@ pub fn names() -> Vec<String> {
         Some(name.strip_suffix(".ron")?.to_owned())
     });
     let mut names: Vec<String> = shipped.collect();
+    // Nothing is touched in `still`, by design.
+    names.retain(|name| name != "still");
     names.sort();
     names.extend(SCENES.iter().map(|scene| scene.name.to_owned()));
     names
@@ -71,8 +73,7 @@ pub fn agrees(device: &Device, name: &str) -> Result<(), Failed> {
         found.pose_rms_m, found.side_flips, found.touched_plants, found.flipped_roots_m
     );
     println!("{name}: {text}");
-    let has_bodies = !loaded.scene.bodies.is_empty();
-    ensure(!has_bodies || found.touched_plants > 10, || {
+    ensure(found.touched_plants > 10, || {
         format!("only {} plants touched", found.touched_plants)
     })?;
     let agree = found.pose_rms_m <= RMS_M && share <= FLIPPED_SHARE;
