@@ -12,7 +12,7 @@ struct TickUniform {
     most_rounds: u32,
     // Δt/T of the recovery.
     step_over_t: f32,
-    // 2κΔt of the bend springs over the whole sub-step.
+    // κΔt of the bend springs over the whole sub-step.
     bend: f32,
     strain_limit: f32,
     // Most sweeps in a turn of either pass.

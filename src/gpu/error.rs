@@ -31,13 +31,9 @@ pub enum GpuError {
 
     #[error(
         "the driver of adapter '{adapter}' has ended loops of {count} kernels early, so that their \
-         plants are wrong: give solver.max_sweeps less than {sweeps}, or take --engine cpu"
+         plants are wrong: lower solver.max_sweeps, or take --engine cpu"
     )]
-    CutShort {
-        adapter: String,
-        count: u32,
-        sweeps: u32,
-    },
+    CutShort { adapter: String, count: u32 },
 
     #[error("the graphics device was lost: {reason}; make a new device to go on")]
     Lost { reason: String },

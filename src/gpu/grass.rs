@@ -14,10 +14,9 @@ use super::passes::collide::CollidePass;
 use super::passes::depth_cube::DepthCubePass;
 use super::passes::recover::RecoverPass;
 use super::passes::relax::RelaxPass;
-use super::passes::turns::TurnsPass;
 use super::passes::{Recording, WORKGROUP};
 use super::tick_data::{ContactRecord, TickUniform};
-use super::turns::PassTurns;
+use super::turns::{PassTurns, TurnsPass};
 use super::{Buffer, FieldBuffers, Gpu, GpuError, PassTimer};
 use crate::scene::Method;
 use crate::scene::method::Collide;
@@ -132,7 +131,7 @@ pub struct GpuGrass {
     active: u32,
     colliding: u32,
     /// Turns of the current tick's passes.
-    pub(super) turns: PassTurns,
+    turns: PassTurns,
     pub dispatches: Dispatches,
     pub timer: PassTimer,
 }

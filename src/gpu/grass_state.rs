@@ -43,7 +43,6 @@ impl GpuGrass {
             return Err(GpuError::CutShort {
                 adapter: self.gpu.adapter.name.clone(),
                 count,
-                sweeps: self.turns.relax.sweeps,
             });
         }
         let slabs: Vec<u32> = meadow.work.tiles.iter().map(|tile| tile.slab).collect();

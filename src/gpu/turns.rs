@@ -5,8 +5,11 @@
 //! 65,535 times together. Hardware drivers take the device away from a dispatch that runs for
 //! seconds. So collide and relax run in turns of as many sweeps as stay below that, counted with
 //! the most rounds. Kernels that find their loops cut short all the same say so:
-//! [`Counts::cut_short`](super::grass_state::Counts::cut_short).
+//! [`Counts::cut_short`](super::Counts::cut_short). Shader: `shaders/turns.wgsl`.
 
+use super::grass_buffers::GrassBuffers;
+use super::passes::{Access, Groups, Kernel, Recording};
+use super::{Gpu, GpuError};
 use crate::sim::Meadow;
 use crate::sim::fault::Fault;
 use crate::sim::parts::Tested;
@@ -90,6 +93,45 @@ fn loops_per_node(meadow: &Meadow) -> u64 {
         contacts.iter().map(of_part).sum()
     });
     sums.max().unwrap_or(0)
+}
+
+/// The kernel that goes on to the next turn.
+#[derive(Clone, Debug)]
+pub struct TurnsPass {
+    next_turn: Kernel,
+}
+
+impl TurnsPass {
+    /// # Errors
+    /// The shader's.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let bindings = [(4, Access::Write)];
+        Ok(Self {
+            next_turn: Kernel::new(gpu, "turns.wgsl", "next_turn", &bindings, 1)?,
+        })
+    }
+
+    /// Records a pass once per turn.
+    pub fn record(
+        &self,
+        gpu: &Gpu,
+        into: &mut Recording<'_>,
+        grass: &GrassBuffers,
+        turns: Turns,
+        mut pass: impl FnMut(&mut Recording<'_>),
+    ) {
+        into.encoder.clear_buffer(&grass.touched.raw, 8, Some(4));
+        pass(into);
+        if turns.count == 1 {
+            return;
+        }
+        let bound = self.next_turn.bind(gpu, &[(4, &grass.touched.raw)]);
+        for _ in 1..turns.count {
+            self.next_turn
+                .record(into, &bound, Groups::Direct([1, 1, 1]));
+            pass(into);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -75,6 +75,11 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
                     --require-gpu out";
         return Err(Failure::Usage(text.into()));
     }
+    if choice == EngineChoice::Reference {
+        let text = "the reference engine makes sub-steps of its own, which no recording has: take \
+                    --engine cpu or gpu, or `sward run --engine reference` of the scene";
+        return Err(Failure::Usage(text.into()));
+    }
     let mut trace = match &arguments.trace {
         Some(path) => Some(ResultFile::create(path)?.into_trace()),
         None => None,

@@ -2,11 +2,10 @@
 //! plants; tiles that do not collide are not dispatched.
 //! Shader: `shaders/collide.wgsl`; twin: `src/sim/collide.rs`.
 
-use super::turns::TurnsPass;
 use super::{Access, Groups, Kernel, Recording};
 use crate::gpu::cubes::CubeBuffers;
 use crate::gpu::grass_buffers::{COLLIDE_GROUPS, GrassBuffers};
-use crate::gpu::turns::Turns;
+use crate::gpu::turns::{Turns, TurnsPass};
 use crate::gpu::{Gpu, GpuError};
 
 /// The pass that lists touched plants.

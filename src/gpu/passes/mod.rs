@@ -7,7 +7,6 @@ pub mod collide;
 pub mod depth_cube;
 pub mod recover;
 pub mod relax;
-pub mod turns;
 
 use super::wgsl::{self, Constant, WgslFile};
 use super::{Buffer, FieldBuffers, Gpu, GpuError, PassTimer};

@@ -2,11 +2,10 @@
 //! number never visits the CPU.
 //! Shader: `shaders/relax.wgsl`; twin: `src/sim/relax.rs`.
 
-use super::turns::TurnsPass;
 use super::{Access, Groups, Kernel, Recording};
 use crate::gpu::cubes::CubeBuffers;
 use crate::gpu::grass_buffers::{GrassBuffers, RELAX_GROUPS};
-use crate::gpu::turns::Turns;
+use crate::gpu::turns::{Turns, TurnsPass};
 use crate::gpu::{Gpu, GpuError};
 
 /// The pass that pushes touched plants out and restores their shape.
