@@ -63,7 +63,7 @@ impl Stage {
         let mut renderer = Renderer::new(gpu, PictureTarget::FORMAT, SIZE)?;
         let terrain = &meadow.scene.terrain;
         let look = GroundLook {
-            map: &ColourMap::of(terrain, &meadow.field.ground),
+            map: &ColourMap::of_patches(terrain, &meadow.field.ground),
             soil_rgb: terrain.soil_rgb,
         };
         renderer.set_scene(gpu, &meadow.field, &look, meadow.bodies.shapes())?;

@@ -1,19 +1,19 @@
-//! Which tiles' blades a frame draws, and how finely.
+//! Which tiles' plants a frame draws, and how finely.
 //!
 //! Per frame the processor lists the tiles in sight, near to far, and nothing per plant. Tiles of
-//! one band of distance share a draw call: they have the same number of segments, a subset of the
-//! simulated nodes, and at most the same number of blades. How many blades of a tile are drawn
-//! falls smoothly with its distance; they are a prefix of the tile's sequence, and their width
-//! makes up for those left out.
+//! one band of distance have the same detail: the same number of drawn segments, a subset of the
+//! simulated nodes. How many plants of a tile are drawn falls smoothly with its distance; they are
+//! a prefix of the tile's sequence, and their width makes up for those left out.
 
 use crate::base::Vec3;
 use crate::field::TileId;
 use crate::gpu::field_data::TileRecord;
 use crate::gpu_struct;
 
-use super::blades::BladesInput;
 use super::camera::{Frustum, View};
 use super::error::RenderError;
+use super::plant_form::DETAILS;
+use super::plants::BladesInput;
 
 /// How far and how finely blades are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,22 +71,13 @@ impl BladeDetail {
 }
 
 gpu_struct! {
-    pub(super) struct Band {
-        pub(super) first_tile: u32,
-        pub(super) blades: u32,
-        pub(super) stride: u32,
-        pub(super) steps: u32,
-    }
-}
-
-gpu_struct! {
     pub(super) struct DrawnTile {
         tile: TileRecord,
         anchor_from_eye: [f32; 3],
         pub(super) blades: f32,
         widen: f32,
-        spare_a: f32,
-        spare_b: [f32; 2],
+        pub(super) detail: u32,
+        spare: [u32; 2],
     }
 }
 
@@ -98,8 +89,6 @@ const ACTIVE_NEARNESS: f64 = 0.4;
 /// Share of the lost cover that the remaining blades make up for by their width; the ground's
 /// own look supplies the rest.
 const WIDEN_POWER: f64 = 0.75;
-/// Most instances of one draw call; what is more is split.
-const MOST_INSTANCES: u64 = 1 << 30;
 
 /// A tile in sight.
 #[derive(Clone, Copy, Debug)]
@@ -160,23 +149,12 @@ fn sight_of(
     })
 }
 
-/// Draw calls, near to far: each a band and its tiles. `first_tile` is left to the caller.
-pub(super) fn bands_in_sight(
-    input: &BladesInput<'_>,
-    view: &View,
-    aspect: f32,
-) -> Vec<(Band, Vec<DrawnTile>)> {
+/// Tiles in sight as the device gets them, near to far.
+pub(super) fn drawn_tiles(input: &BladesInput<'_>, view: &View, aspect: f32) -> Vec<DrawnTile> {
     let seen = tiles_in_sight(input, view, aspect);
-    let mut draws = Vec::new();
-    for run in seen.chunk_by(|a, b| a.band == b.band) {
-        let band = band_of(input, run[0].band);
-        let most_tiles = (MOST_INSTANCES / u64::from(band.blades)).max(1) as usize;
-        for part in run.chunks(most_tiles) {
-            let tiles = part.iter().map(|sight| drawn_tile(input, view, sight));
-            draws.push((band, tiles.collect()));
-        }
-    }
-    draws
+    seen.iter()
+        .map(|sight| drawn_tile(input, view, sight))
+        .collect()
 }
 
 /// Bands start at half the distance of full density; band 0 lies before that.
@@ -189,33 +167,9 @@ fn band_at(detail: BladeDetail, distance_m: f64) -> u32 {
     }
 }
 
-/// Distance at which a band starts.
-fn band_start_m(detail: BladeDetail, band: u32) -> f64 {
-    if band == 0 {
-        0.0
-    } else {
-        0.5 * f64::from(detail.full_m) * BAND_RATIO.powi(band as i32 - 1)
-    }
-}
-
-fn band_of(input: &BladesInput<'_>, band: u32) -> Band {
-    let start = band_start_m(input.detail, band);
-    let all = blades_per_tile(input);
-    let segments = input.field.table.segments;
-    // P15 eq. 4 with half the distance of full density as reference, in steps of whole nodes.
-    let stride = match band {
-        0 => 1,
-        1..=2 => 2,
-        3..=4 => 4,
-        _ => segments,
-    }
-    .min(segments);
-    Band {
-        first_tile: 0,
-        blades: (all * input.detail.share(start)).ceil().max(1.0) as u32,
-        stride,
-        steps: segments.div_ceil(stride),
-    }
+/// Detail of a band's plants, 0 the finest: each of the following is good for two bands.
+fn detail_of(band: u32) -> u32 {
+    band.div_ceil(2).min(DETAILS - 1)
 }
 
 fn slab_of(input: &BladesInput<'_>, tile: TileId) -> Option<u32> {
@@ -241,8 +195,8 @@ fn drawn_tile(input: &BladesInput<'_>, view: &View, sight: &Sight) -> DrawnTile 
         anchor_from_eye: view.from_eye(origin),
         blades: (blades_per_tile(input) * share) as f32,
         widen: share.powf(-WIDEN_POWER) as f32,
-        spare_a: 0.0,
-        spare_b: [0.0; 2],
+        detail: detail_of(sight.band),
+        spare: [0; 2],
     }
 }
 
@@ -251,24 +205,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bands_lie_end_to_end() {
+    fn detail_falls_with_distance() {
         let detail = BladeDetail::default();
-        for band in 1..12 {
-            let start = band_start_m(detail, band);
-            assert_eq!(band_at(detail, start * 1.0001), band);
-            assert_eq!(band_at(detail, start * 0.9999), band - 1);
-        }
-        assert_eq!(band_at(detail, 0.0), 0);
-    }
-
-    /// A band's draw call has as many places as its nearest tile needs.
-    #[test]
-    fn no_tile_needs_more_places_than_its_band_has() {
-        let detail = BladeDetail::software();
-        for step in 1..500 {
-            let distance = 0.1 * f64::from(step);
-            let start = band_start_m(detail, band_at(detail, distance));
-            assert!(detail.share(distance) <= detail.share(start));
-        }
+        assert_eq!(detail_of(band_at(detail, 0.0)), 0);
+        let at = |metres: f64| detail_of(band_at(detail, metres));
+        assert!((0..500).all(|step| at(f64::from(step)) <= at(f64::from(step + 1))));
+        assert_eq!(at(0.49 * 12.0), 0);
+        assert_eq!(at(0.51 * 12.0), 1);
+        assert_eq!(at(1e6), DETAILS - 1);
     }
 }

@@ -9,7 +9,7 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::terrain::HeightGrid;
 use crate::terrain::bintree::{Bintree, DrawnMesh, Mesh, MeshChange, MeshDetail, Point, Viewpoint};
 
-use super::blades::BladesInput;
+use super::plants::BladesInput;
 use super::error::RenderError;
 use super::terrain::edge_heights;
 

@@ -16,11 +16,11 @@ use crate::gpu_struct;
 use crate::terrain::HeightGrid;
 use crate::terrain::bintree::MeshChange;
 
-use super::blades::{BladesInput, Canopy};
 use super::camera::View;
 use super::error::RenderError;
 use super::ground_look::GroundTexture;
 use super::ground_mesh::{GroundMesh, TerrainDetail};
+use super::plants::{BladesInput, Canopy};
 use super::pipeline::{DepthUse, Drawing, READ_STORAGE, UNIFORM, bind_group, group_layout};
 use super::view_group::ViewGroups;
 
