@@ -83,7 +83,7 @@ fn blade_vertex(
     let sight = centre / max(length(centre), 1e-6);
     let seen = across - sight * dot(across, sight);
     let seen_share = length(seen);
-    let half_m = 0.5 * plant.width_m * drawn.tile.widen * mix(0.6, 1.0, blade.size);
+    let half_m = 0.5 * plant.width_m * drawn.widen * mix(0.6, 1.0, blade.size);
     let pixel_m = distance * frame.pixel_rad;
     // The whole blade is widened by one factor, from its mean width as seen.
     let seen_half_px = 0.7 * half_m * max(seen_share, 0.05) / pixel_m;

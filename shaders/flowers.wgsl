@@ -44,7 +44,7 @@ fn on_stem(drawn: DrawnPlant, corner: u32) -> FlowerPoint {
     let centre = drawn.root_from_eye + (pose.place - drawn.plant.root) * drawn.grown;
     let sight = centre / max(length(centre), 1e-6);
     let across = unit_or(cross(pose.direction, sight), vec3f(1.0, 0.0, 0.0));
-    let half_m = 0.5 * drawn.plant.width_m * drawn.tile.widen;
+    let half_m = 0.5 * drawn.plant.width_m * drawn.widen;
     let widened = max(LEAST_HALF_PX * length(centre) * frame.pixel_rad / half_m, 1.0);
     let position = centre + across * (half_m * widened * select(-1.0, 1.0, is_right));
     let normal = normalize(cross(across, pose.direction) + across * select(-0.5, 0.5, is_right));
@@ -70,7 +70,7 @@ fn on_head(drawn: DrawnPlant, corner: u32) -> FlowerPoint {
     let uv = reach * vec2f(cos_turns(sector), sin_turns(sector));
 
     let size = 0.8 + 0.4 * shade_byte(drawn.plant, 2u);
-    let half_m = 0.5 * form.head_m * size * drawn.grown * drawn.tile.widen;
+    let half_m = 0.5 * form.head_m * size * drawn.grown * drawn.widen;
     let widened = max(LEAST_HALF_PX * length(centre) * frame.pixel_rad / max(half_m, 1e-6), 1.0);
     let shift = (first * uv.x + second * uv.y + normal * (0.22 * reach)) * (half_m * widened);
     let position = centre + shift;

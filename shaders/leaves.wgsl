@@ -40,7 +40,7 @@ fn leaf_vertex(
     let facing_up = select(normal, -normal, normal.y < 0.0);
 
     let centre = drawn.root_from_eye + (pose.place - plant.root) * drawn.grown;
-    let half_m = 0.5 * plant.width_m * drawn.tile.widen * drawn.grown;
+    let half_m = 0.5 * plant.width_m * drawn.widen * drawn.grown;
     let widened = max(LEAST_HALF_PX * length(centre) * frame.pixel_rad / max(half_m, 1e-6), 1.0);
     let out = select(0.0, half_m * widened, is_outer);
     let position = centre + across * (side * out) + facing_up * (FOLD * out);

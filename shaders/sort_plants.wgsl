@@ -3,6 +3,7 @@
 //
 // A job is WORKGROUP places of a tile's order. Every place writes its candidate; prefix sums over
 // the jobs give every bucket's exact count and every candidate its place, the same in every run.
+#import "shared/count.wgsl"
 #import "shared/field.wgsl"
 #import "shared/plant.wgsl"
 #import "shared/tile.wgsl"
@@ -19,6 +20,7 @@ struct SortUniform {
     jobs: u32,
     groups_wide: u32,
     spare: vec2u,
+    count: CountUniform,
     // Form of each kind, four a row.
     forms: array<vec4u, 2>,
     // Vertices of a plant of each bucket, four a row: one row per form, one column per detail.
@@ -42,8 +44,10 @@ struct DrawArgs {
 @group(1) @binding(0) var<uniform> sorting: SortUniform;
 @group(1) @binding(1) var<storage, read> drawn_tiles: array<DrawnTile>;
 @group(1) @binding(2) var<storage, read> jobs: array<Job>;
-// In `w` the bucket, or NO_BUCKET for what is not seen, and above it the rank within the job.
+// Tile, rank, kind and how it thrives, and halves: share of its size and factor of its width.
 @group(1) @binding(3) var<storage, read_write> candidates: array<vec4u>;
+// The candidates' buckets, NO_BUCKET for what is not seen, and above them ranks within the job.
+@group(1) @binding(8) var<storage, read_write> slots: array<u32>;
 // Plants of each bucket and job, bucket by bucket; then the sums of those of earlier jobs.
 @group(1) @binding(4) var<storage, read_write> job_counts: array<u32>;
 // Plants of each bucket.
@@ -62,15 +66,41 @@ fn is_seen(root: vec3f, height_m: f32) -> bool {
     return clip.w > -radius && abs(clip.x) <= clip.w + reach.x && abs(clip.y) <= clip.w + reach.y;
 }
 
+struct Candidate {
+    entry: vec4u,
+    bucket: u32,
+}
+
+// How many of a triangle's plants and companions are drawn.
+fn count_on(drawn: DrawnTile, cell: vec2u, half: u32) -> f32 {
+    let view = sorting.count;
+    if view.rule == COUNT_BY_DISTANCE {
+        return drawn.share * view.most;
+    }
+    let corners = triangle_corners(drawn.tile, drawn.anchor_from_eye, cell, half);
+    if view.rule == COUNT_BY_PROJECTED_AREA {
+        return min(drawn.boost * count_by_projected_area(corners, view), view.most);
+    }
+    return min(drawn.boost * count_by_world_area(corners, view), view.most);
+}
+
 // The candidate at a rank of a tile: a plant, or a companion of one. Only blades have companions.
-fn candidate_at(tile_index: u32, rank: u32) -> vec4u {
+fn candidate_at(tile_index: u32, rank: u32) -> Candidate {
     let drawn = drawn_tiles[tile_index];
-    let none = vec4u(tile_index, rank, 0u, NO_BUCKET);
-    if f32(rank) >= drawn.blades {
+    let none = Candidate(vec4u(0u), NO_BUCKET);
+    if rank >= drawn.ranks {
         return none;
     }
     let seed = seed_at(drawn.tile, rank % field.plants_per_tile);
     if !seed.exists {
+        return none;
+    }
+    let half = rank & 1u;
+    let triangle = ((seed.cell.y * field.cells.x + seed.cell.x) << 1u) | half;
+    let index = rank / (2u * field.tile_cells * field.tile_cells);
+    let count = count_on(drawn, seed.cell, half);
+    let shown = shown_share(count, count_rounding(triangle), index);
+    if shown < LEAST_GROWN {
         return none;
     }
     let choice = choice_of(drawn.tile, seed);
@@ -83,12 +113,16 @@ fn candidate_at(tile_index: u32, rank: u32) -> vec4u {
     }
     let plant = plant_of(drawn.tile, seed, choice);
     let root = drawn.anchor_from_eye + plant.root;
-    let grown = grown_share(drawn, rank, length(root), sorting.reach_m);
+    // Plants at the end of sight are small.
+    let grown = shown * (1.0 - smoothstep(0.75, 1.0, length(root) / sorting.reach_m));
     if grown < LEAST_GROWN || !is_seen(root, plant.height_m) {
         return none;
     }
+    // The drawn plants' width makes up for most of those left out.
+    let widen = pow(max(count / sorting.count.most, 1e-4), -WIDEN_POWER);
     let what = (choice.kind << 20u) | choice.thrives;
-    return vec4u(tile_index, rank, what, form * DETAILS + drawn.detail);
+    let entry = vec4u(tile_index, rank, what, pack2x16float(vec2f(grown, widen)));
+    return Candidate(entry, form * DETAILS + drawn.detail);
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -97,21 +131,21 @@ fn list_plants(
     @builtin(local_invocation_index) local: u32,
 ) {
     let job = group.y * sorting.groups_wide + group.x;
-    var candidate = vec4u(0u, 0u, 0u, NO_BUCKET);
+    var candidate = Candidate(vec4u(0u), NO_BUCKET);
     if job < sorting.jobs {
         candidate = candidate_at(jobs[job].tile, jobs[job].first_rank + local);
     }
-    buckets[local] = candidate.w;
+    buckets[local] = candidate.bucket;
     workgroupBarrier();
     if job >= sorting.jobs {
         return;
     }
     var rank = 0u;
     for (var i = 0u; i < local; i++) {
-        rank += select(0u, 1u, buckets[i] == candidate.w);
+        rank += select(0u, 1u, buckets[i] == candidate.bucket);
     }
-    candidate.w |= rank << 8u;
-    candidates[job * WORKGROUP + local] = candidate;
+    candidates[job * WORKGROUP + local] = candidate.entry;
+    slots[job * WORKGROUP + local] = candidate.bucket | (rank << 8u);
     if local < BUCKETS {
         var count = 0u;
         for (var i = 0u; i < WORKGROUP; i++) {
@@ -172,11 +206,11 @@ fn sort_plants(
         let vertices = sorting.vertices[local / DETAILS][local % DETAILS];
         draws[local] = DrawArgs(vertices, totals[local], local * BUCKET_VERTICES, 0u);
     }
-    let candidate = candidates[job * WORKGROUP + local];
-    let bucket = candidate.w & 255u;
+    let slot = slots[job * WORKGROUP + local];
+    let bucket = slot & 255u;
     if bucket == NO_BUCKET {
         return;
     }
-    let before = job_counts[bucket * sorting.jobs + job] + (candidate.w >> 8u);
-    sorted[first_of_bucket(bucket) + before] = candidate;
+    let before = job_counts[bucket * sorting.jobs + job] + (slot >> 8u);
+    sorted[first_of_bucket(bucket) + before] = candidates[job * WORKGROUP + local];
 }

@@ -68,7 +68,7 @@ fn on_stick(drawn: DrawnPlant, step: u32) -> StickPoint {
     let node = min(step * drawn.bucket.stride, field.segments);
     let pose = drawn_node(drawn, node);
     let along = f32(node) * field.segment_share;
-    let radius_m = 0.5 * drawn.plant.width_m * drawn.tile.widen * drawn.grown * (1.0 - 0.65 * along);
+    let radius_m = 0.5 * drawn.plant.width_m * drawn.widen * drawn.grown * (1.0 - 0.65 * along);
     let place = over_ground(drawn, pose.place, radius_m);
     // Grown wood has knees: every node lies a little off the line.
     let word = drawn.plant.shade >> (node & 15u);

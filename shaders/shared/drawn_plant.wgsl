@@ -40,7 +40,8 @@ struct PlantLook {
 @group(3) @binding(2) var<storage, read> active_nodes: array<vec4f>;
 @group(3) @binding(3) var base_colour: texture_2d<f32>;
 @group(3) @binding(4) var base_sampler: sampler;
-// Plants bucket by bucket: tile, rank, kind and how it thrives. And how many each bucket has.
+// Plants bucket by bucket: tile, rank, kind and how it thrives, and halves: share of its size and
+// factor of its width. And how many each bucket has.
 @group(3) @binding(5) var<storage, read> sorted: array<vec4u>;
 @group(3) @binding(6) var<storage, read> totals: array<u32, BUCKETS>;
 
@@ -54,6 +55,7 @@ struct DrawnPlant {
     companion: u32, // 0 is the simulated plant
     thrives: f32, // s′ of eq. 18
     grown: f32, // share of its size
+    widen: f32, // factor of its width
     root_from_eye: vec3f,
     bucket: Bucket,
 }
@@ -72,15 +74,16 @@ fn drawn_plant(vertex: u32, instance: u32) -> DrawnPlant {
     let place = rank % field.plants_per_tile;
     let choice = Choice(entry.z >> 20u, entry.z & 0xfffffu);
     let plant = plant_of(tile.tile, seed_at(tile.tile, place), choice);
-    let root = tile.anchor_from_eye + plant.root;
+    let sizes = unpack2x16float(entry.w);
     return DrawnPlant(
         tile,
         plant,
         place,
         rank / field.plants_per_tile,
         f32(choice.thrives) * (1.0 / 65536.0),
-        grown_share(tile, rank, length(root), plant_look.reach_m),
-        root,
+        sizes.x,
+        sizes.y,
+        tile.anchor_from_eye + plant.root,
         plant_look.buckets[bucket],
     );
 }

@@ -2,6 +2,7 @@
 
 pub mod blade_shape;
 pub mod blade_table;
+pub mod count;
 pub mod grid;
 pub mod in_view;
 pub mod kinds;

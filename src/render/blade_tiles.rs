@@ -15,6 +15,17 @@ use super::error::RenderError;
 use super::plant_form::DETAILS;
 use super::plants::BladesInput;
 
+/// What decides how many of a triangle's plants are drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Count {
+    /// All of them up to [`BladeDetail::full_m`], then fewer with distance, whatever the slope.
+    Distance,
+    /// P15 eq. 1: so many per pixel of the triangle's projected area.
+    ProjectedArea { per_px: f32 },
+    /// P15 eq. 2: the same from its area in the world and its distance.
+    WorldArea { per_px: f32 },
+}
+
 /// How far and how finely blades are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BladeDetail {
@@ -25,6 +36,7 @@ pub struct BladeDetail {
     /// Blades drawn per plant near by, at least 1: the simulated one and companions that move
     /// with it.
     pub tuft: u32,
+    pub count: Count,
 }
 
 impl Default for BladeDetail {
@@ -33,6 +45,7 @@ impl Default for BladeDetail {
             full_m: 12.0,
             reach_m: 110.0,
             tuft: 4,
+            count: Count::Distance,
         }
     }
 }
@@ -44,6 +57,7 @@ impl BladeDetail {
             full_m: 4.0,
             reach_m: 50.0,
             tuft: 3,
+            count: Count::Distance,
         }
     }
 
@@ -51,13 +65,18 @@ impl BladeDetail {
     /// Distances that are not finite and positive, an empty tuft.
     pub(super) fn check(self) -> Result<(), RenderError> {
         let lengths = [self.full_m, self.reach_m];
-        if lengths.iter().all(|m| m.is_finite() && *m > 0.0) && self.tuft > 0 {
+        let per_px = match self.count {
+            Count::Distance => 1.0,
+            Count::ProjectedArea { per_px } | Count::WorldArea { per_px } => per_px,
+        };
+        let is_positive = |number: &f32| number.is_finite() && *number > 0.0;
+        if lengths.iter().all(is_positive) && is_positive(&per_px) && self.tuft > 0 {
             return Ok(());
         }
         Err(RenderError::BadInput {
             what: "the detail of the blades",
             found: format!("{self:?}"),
-            wanted: "give distances above 0 and at least one blade per plant",
+            wanted: "give distances and a density above 0 and at least one blade per plant",
         })
     }
 
@@ -74,10 +93,11 @@ gpu_struct! {
     pub(super) struct DrawnTile {
         tile: TileRecord,
         anchor_from_eye: [f32; 3],
-        pub(super) blades: f32,
-        widen: f32,
+        share: f32,
         pub(super) detail: u32,
-        spare: [u32; 2],
+        pub(super) ranks: u32,
+        boost: f32,
+        spare: u32,
     }
 }
 
@@ -88,7 +108,20 @@ const BAND_RATIO: f64 = std::f64::consts::SQRT_2;
 const ACTIVE_NEARNESS: f64 = 0.4;
 /// Share of the lost cover that the remaining blades make up for by their width; the ground's
 /// own look supplies the rest.
-const WIDEN_POWER: f64 = 0.75;
+pub(super) const WIDEN_POWER: f32 = 0.75;
+
+/// Columns and rows of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Size {
+    pub(super) columns: u32,
+    pub(super) rows: u32,
+}
+
+impl Size {
+    pub(super) fn aspect(self) -> f32 {
+        self.columns as f32 / self.rows as f32
+    }
+}
 
 /// A tile in sight.
 #[derive(Clone, Copy, Debug)]
@@ -150,10 +183,14 @@ fn sight_of(
 }
 
 /// Tiles in sight as the device gets them, near to far.
-pub(super) fn drawn_tiles(input: &BladesInput<'_>, view: &View, aspect: f32) -> Vec<DrawnTile> {
-    let seen = tiles_in_sight(input, view, aspect);
+pub(super) fn drawn_tiles(
+    input: &BladesInput<'_>,
+    view: &View,
+    picture: Size,
+) -> Vec<DrawnTile> {
+    let seen = tiles_in_sight(input, view, picture.aspect());
     seen.iter()
-        .map(|sight| drawn_tile(input, view, sight))
+        .map(|sight| drawn_tile(input, view, picture, sight))
         .collect()
 }
 
@@ -177,26 +214,53 @@ fn slab_of(input: &BladesInput<'_>, tile: TileId) -> Option<u32> {
     found.ok().map(|index| input.active[index].1)
 }
 
-fn blades_per_tile(input: &BladesInput<'_>) -> f64 {
-    f64::from(input.field.grid.plants_per_tile()) * f64::from(input.detail.tuft.max(1))
+/// Plants of a seeding triangle and their companions: n_max of eq. 1.
+pub(super) fn most_on_triangle(input: &BladesInput<'_>) -> f64 {
+    f64::from(input.field.grid.plants_per_triangle()) * f64::from(input.detail.tuft.max(1))
 }
 
-fn drawn_tile(input: &BladesInput<'_>, view: &View, sight: &Sight) -> DrawnTile {
+/// A number that no triangle of a tile's count exceeds.
+fn count_bound(input: &BladesInput<'_>, view: &View, picture: Size, sight: &Sight) -> f64 {
+    let most = most_on_triangle(input);
+    let per_px = match input.detail.count {
+        Count::Distance => return input.detail.share(sight.distance_m) * most,
+        Count::ProjectedArea { per_px } | Count::WorldArea { per_px } => f64::from(per_px),
+    };
+    let (field, grid) = (input.field, &input.field.grid);
+    let cell_m = f64::from(grid.cell_m);
+    let [low, high] = grid.tile_heights(sight.tile, &field.ground).map(f64::from);
+    let slope = (high - low) / cell_m;
+    let area_m2 = 0.5 * cell_m * cell_m * (1.0 + slope * slope).sqrt();
+    let viewpoint = view.viewpoint(picture.aspect(), picture.rows);
+    // Off the middle of the picture an angle covers more pixels.
+    let off_middle = 1.0 + viewpoint.half_tan.iter().map(|t| t * t).sum::<f64>();
+    let away_px = sight.distance_m * viewpoint.pixel_rad;
+    let bound = per_px * area_m2 * off_middle.powf(1.5) / (away_px * away_px).max(1e-12);
+    bound.min(most)
+}
+
+fn drawn_tile(input: &BladesInput<'_>, view: &View, picture: Size, sight: &Sight) -> DrawnTile {
     let (field, grid) = (input.field, &input.field.grid);
     let mut record = TileRecord::resting(field, sight.tile);
+    let mut boost = 1.0;
     if let Some(slab) = slab_of(input, sight.tile) {
         record.slab = slab;
+        boost /= ACTIVE_NEARNESS * ACTIVE_NEARNESS;
     }
     let anchor = grid.anchor_of(sight.tile, &field.ground);
     let origin = Vec3::of(grid.anchor_in_world(&anchor, &field.ground));
-    let share = input.detail.share(sight.distance_m);
+    // The count's fraction is rounded up or down by chance.
+    let most_ranks = most_on_triangle(input) as u32;
+    let bound = count_bound(input, view, picture, sight);
+    let ranks = ((bound + 1.0).ceil() as u32).min(most_ranks);
     DrawnTile {
         tile: record,
         anchor_from_eye: view.from_eye(origin),
-        blades: (blades_per_tile(input) * share) as f32,
-        widen: share.powf(-WIDEN_POWER) as f32,
+        share: input.detail.share(sight.distance_m) as f32,
         detail: detail_of(sight.band),
-        spare: [0; 2],
+        ranks: ranks * grid.triangles_per_tile(),
+        boost: boost as f32,
+        spare: 0,
     }
 }
 

@@ -5,6 +5,7 @@ use crate::field::Field;
 use crate::gpu::{Gpu, PassTimer};
 use crate::terrain::bintree::MeshChange;
 
+use super::blade_tiles::Size;
 use super::bodies::{BodiesLayer, BodyInstance};
 use super::camera::View;
 use super::error::RenderError;
@@ -191,7 +192,6 @@ impl Renderer {
     /// Writes what the layers need for this frame.
     fn write(&mut self, gpu: &Gpu, input: &FrameInput<'_>) -> Result<(), RenderError> {
         let size = self.targets.size;
-        let aspect = size[0] as f32 / size[1] as f32;
         let light = input.sun.daylight();
         let casters = self.bodies.write(gpu, input.view, input.bodies)?;
         let fit = ShadowFit::new(&light, input.view, &casters);
@@ -203,7 +203,9 @@ impl Renderer {
             .write(gpu, input.view, size, self.terrain_detail, blades)?;
         if let Some(blades) = &input.blades {
             blades.detail.check()?;
-            self.plants.write(gpu, input.view, aspect, blades)?;
+            let [columns, rows] = size;
+            let picture = Size { columns, rows };
+            self.plants.write(gpu, input.view, picture, blades)?;
         } else {
             self.plants.clear();
         }

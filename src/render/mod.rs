@@ -31,7 +31,7 @@ mod twigs;
 mod view_group;
 
 pub use active_nodes::ActiveNodes;
-pub use blade_tiles::BladeDetail;
+pub use blade_tiles::{BladeDetail, Count};
 pub use bodies::BodyInstance;
 pub use camera::{Frustum, View};
 pub use error::RenderError;
@@ -49,11 +49,14 @@ use crate::gpu::GpuStruct;
 use crate::gpu::layout::StructLayout;
 use crate::gpu::wgsl::WgslFile;
 use crate::wgsl_file;
+use crate::field::grid::ANCHOR_CELLS;
 use crate::field::plant::MAX_SPECIES;
 use crate::gpu::passes::WORKGROUP;
+use crate::field::count::{COUNT_WORD, NEAR_M};
+use blade_tiles::WIDEN_POWER;
 use blades::{TUFT_RADIUS_M, TUFT_TURNS};
 use plant_form::{BUCKET_VERTICES, BUCKETS, DETAILS, FORM_BLADE, FORM_COUNT};
-use sort_plants::{LEAST_GROWN, NO_BUCKET};
+use sort_plants::{COUNT_BY_DISTANCE, COUNT_BY_PROJECTED_AREA, LEAST_GROWN, NO_BUCKET};
 use terrain::{CHUNK_SAMPLES, LAND_RINGS_M};
 
 /// Format in which light is added up before it is shown.
@@ -61,6 +64,7 @@ const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// The shaders of this layer and what only they import.
 pub const SHADERS: &[WgslFile] = &[
+    wgsl_file!("shared/count.wgsl", ANCHOR_CELLS, COUNT_WORD, NEAR_M),
     wgsl_file!("shared/drawn_plant.wgsl", BUCKET_VERTICES, BUCKETS, MAX_SPECIES),
     wgsl_file!("shared/drawn_tile.wgsl"),
     wgsl_file!("shared/frame.wgsl"),
@@ -80,11 +84,14 @@ pub const SHADERS: &[WgslFile] = &[
         "sort_plants.wgsl",
         BUCKET_VERTICES,
         BUCKETS,
+        COUNT_BY_DISTANCE,
+        COUNT_BY_PROJECTED_AREA,
         DETAILS,
         FORM_BLADE,
         FORM_COUNT,
         LEAST_GROWN,
         NO_BUCKET,
+        WIDEN_POWER,
         WORKGROUP
     ),
     wgsl_file!("terrain.wgsl", CHUNK_SAMPLES, LAND_RINGS_M),
@@ -102,6 +109,7 @@ pub fn layouts() -> Vec<StructLayout> {
         plants::Bucket::layout(),
         plants::FormUniform::layout(),
         plants::PlantLook::layout(),
+        sort_plants::CountUniform::layout(),
         sort_plants::DrawArgs::layout(),
         sort_plants::Job::layout(),
         sort_plants::SortUniform::layout(),

@@ -11,7 +11,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, PassTimer};
 use crate::gpu_struct;
 use crate::scene::Form;
 
-use super::blade_tiles::{BladeDetail, DrawnTile, drawn_tiles};
+use super::blade_tiles::{BladeDetail, DrawnTile, Size, drawn_tiles, most_on_triangle};
 use super::camera::View;
 use super::ground_look::GroundTexture;
 use super::pipeline::{Drawing, READ_STORAGE, UNIFORM, bind_group, group_layout};
@@ -114,7 +114,7 @@ impl BladeCounts {
     fn add(&mut self, drawn: &DrawnTile, segments: u32) {
         let form = &FORMS[FORM_BLADE as usize];
         let [_, steps] = form.steps(drawn.detail, segments);
-        let blades = drawn.blades.ceil() as u64;
+        let blades = u64::from(drawn.ranks);
         self.tiles += 1;
         self.blades += blades;
         self.triangles += blades * u64::from(form.triangles((form.vertices)(steps)));
@@ -244,7 +244,7 @@ impl PlantsLayer {
         &mut self,
         gpu: &Gpu,
         view: &View,
-        aspect: f32,
+        picture: Size,
         input: &BladesInput<'_>,
     ) -> Result<(), GpuError> {
         self.clear();
@@ -256,7 +256,7 @@ impl PlantsLayer {
         let look = plant_look(scene, input.detail.reach_m, segments, self.samples);
         self.look.write(gpu, 0, &[look])?;
         let forms: Vec<u32> = scene.kinds.iter().map(form_index).collect();
-        let tiles = drawn_tiles(input, view, aspect);
+        let tiles = drawn_tiles(input, view, picture);
         for drawn in &tiles {
             self.counts.add(drawn, segments);
         }
@@ -269,8 +269,9 @@ impl PlantsLayer {
             gpu,
             &SortInput {
                 view,
-                aspect,
-                reach_m: input.detail.reach_m,
+                picture,
+                detail: input.detail,
+                most: most_on_triangle(input) as f32,
                 forms: &forms,
                 segments,
                 tiles: &tiles,

@@ -12,15 +12,33 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::gpu_struct;
 
 use super::SHADERS;
-use super::blade_tiles::DrawnTile;
+use super::blade_tiles::{BladeDetail, Count, DrawnTile, Size};
 use super::blades::TUFT_RADIUS_M;
 use super::camera::View;
 use super::plant_form::{BUCKETS, DETAILS, FORM_COUNT, FORMS};
 
 /// A candidate that is not seen.
 pub(super) const NO_BUCKET: u32 = 255;
+/// Rules of counting, as the shader knows them.
+pub(super) const COUNT_BY_DISTANCE: u32 = 0;
+pub(super) const COUNT_BY_PROJECTED_AREA: u32 = 1;
+const COUNT_BY_WORLD_AREA: u32 = 2;
 /// Plants smaller than this share of their size are left out.
 pub(super) const LEAST_GROWN: f32 = 0.02;
+
+gpu_struct! {
+    pub(super) struct CountUniform {
+        right: [f32; 3],
+        pixel_rad: f32,
+        up: [f32; 3],
+        per_px: f32,
+        forward: [f32; 3],
+        rule: u32,
+        most: f32,
+        spare_a: f32,
+        spare_b: [f32; 2],
+    }
+}
 
 gpu_struct! {
     pub(super) struct SortUniform {
@@ -31,6 +49,7 @@ gpu_struct! {
         jobs: u32,
         groups_wide: u32,
         spare: [u32; 2],
+        count: CountUniform,
         forms: [[u32; 4]; MAX_SPECIES / 4],
         vertices: [[u32; DETAILS as usize]; FORM_COUNT as usize],
     }
@@ -56,9 +75,10 @@ gpu_struct! {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SortInput<'a> {
     pub(super) view: &'a View,
-    /// Width over height of the picture.
-    pub(super) aspect: f32,
-    pub(super) reach_m: f32,
+    pub(super) picture: Size,
+    pub(super) detail: BladeDetail,
+    /// Plants of a triangle and their companions.
+    pub(super) most: f32,
     /// Form of each kind.
     pub(super) forms: &'a [u32],
     /// Segments of a plant.
@@ -75,6 +95,7 @@ pub(super) struct PlantSort {
     uniform: Buffer<SortUniform>,
     jobs: Buffer<Job>,
     candidates: Buffer<[u32; 4]>,
+    slots: Buffer<u32>,
     job_counts: Buffer<u32>,
     pub(super) tiles: Buffer<DrawnTile>,
     pub(super) totals: Buffer<u32>,
@@ -95,7 +116,14 @@ impl PlantSort {
         Ok(Self {
             list: kernel(
                 "list_plants",
-                &[(0, Access::Uniform), (1, read), (2, read), (3, write), (4, write)],
+                &[
+                    (0, Access::Uniform),
+                    (1, read),
+                    (2, read),
+                    (3, write),
+                    (4, write),
+                    (8, write),
+                ],
             )?,
             sum: kernel("sum_jobs", &[(0, Access::Uniform), (4, write), (5, write)])?,
             sort: kernel(
@@ -107,11 +135,13 @@ impl PlantSort {
                     (5, write),
                     (6, write),
                     (7, write),
+                    (8, write),
                 ],
             )?,
             uniform: Buffer::new(gpu, "plant sorting", 1, BufferUsages::UNIFORM)?,
             jobs: Buffer::new(gpu, "plant jobs", 1024, storage)?,
             candidates: Buffer::new(gpu, "plant candidates", 0, storage)?,
+            slots: Buffer::new(gpu, "buckets of plant candidates", 0, storage)?,
             job_counts: Buffer::new(gpu, "plants per job", 0, storage)?,
             tiles: Buffer::new(gpu, "drawn tiles", 1024, storage)?,
             totals: Buffer::new(gpu, "plants per bucket", buckets, storage)?,
@@ -138,8 +168,7 @@ impl PlantSort {
         let jobs: Vec<Job> = (0..)
             .zip(input.tiles)
             .flat_map(|(tile, drawn)| {
-                let ranks = drawn.blades.ceil() as u32;
-                let firsts = (0..ranks).step_by(WORKGROUP as usize);
+                let firsts = (0..drawn.ranks).step_by(WORKGROUP as usize);
                 firsts.map(move |first_rank| Job { tile, first_rank })
             })
             .collect();
@@ -147,6 +176,7 @@ impl PlantSort {
         self.jobs.write_or_grow(gpu, &jobs)?;
         let places = jobs.len() * WORKGROUP as usize;
         reserve(gpu, &mut self.candidates, places)?;
+        reserve(gpu, &mut self.slots, places)?;
         reserve(gpu, &mut self.job_counts, jobs.len() * BUCKETS as usize)?;
         let grown = self.tiles.write_or_grow(gpu, input.tiles)?
             | reserve(gpu, &mut self.sorted, places)?;
@@ -171,6 +201,7 @@ impl PlantSort {
                 (2, &self.jobs.raw),
                 (3, candidates),
                 (4, counts),
+                (8, &self.slots.raw),
             ],
         );
         self.list.record(into, &listed, groups);
@@ -186,6 +217,7 @@ impl PlantSort {
                 (5, totals),
                 (6, &self.sorted.raw),
                 (7, &self.draws.raw),
+                (8, &self.slots.raw),
             ],
         );
         self.sort.record(into, &sorted, groups);
@@ -206,7 +238,7 @@ fn reserve<T: bytemuck::Pod>(
 }
 
 fn sort_uniform(input: &SortInput<'_>, jobs: u32) -> SortUniform {
-    let clip_from_eye = input.view.clip_from_eye(input.aspect);
+    let clip_from_eye = input.view.clip_from_eye(input.picture.aspect());
     let rows = clip_from_eye.transpose();
     let length = |row: glam::Vec4| row.truncate().length();
     let ahead = length(rows.w_axis);
@@ -217,11 +249,12 @@ fn sort_uniform(input: &SortInput<'_>, jobs: u32) -> SortUniform {
     SortUniform {
         clip_from_eye: clip_from_eye.to_cols_array_2d(),
         clip_reach: [length(rows.x_axis) + ahead, length(rows.y_axis) + ahead],
-        reach_m: input.reach_m,
+        reach_m: input.detail.reach_m,
         tuft_m: TUFT_RADIUS_M,
         jobs,
         groups_wide: jobs.clamp(1, MOST_GROUPS),
         spare: [0; 2],
+        count: count_uniform(input),
         forms,
         vertices: FORMS.map(|form| {
             [0, 1, 2, 3].map(|detail| {
@@ -229,5 +262,24 @@ fn sort_uniform(input: &SortInput<'_>, jobs: u32) -> SortUniform {
                 (form.vertices)(steps)
             })
         }),
+    }
+}
+
+fn count_uniform(input: &SortInput<'_>) -> CountUniform {
+    let (rule, per_px) = match input.detail.count {
+        Count::Distance => (COUNT_BY_DISTANCE, 0.0),
+        Count::ProjectedArea { per_px } => (COUNT_BY_PROJECTED_AREA, per_px),
+        Count::WorldArea { per_px } => (COUNT_BY_WORLD_AREA, per_px),
+    };
+    CountUniform {
+        right: input.view.right().to_f32(),
+        pixel_rad: input.view.pixel_rad(input.picture.rows),
+        up: input.view.up().to_f32(),
+        per_px,
+        forward: input.view.forward.to_f32(),
+        rule,
+        most: input.most,
+        spare_a: 0.0,
+        spare_b: [0.0; 2],
     }
 }
