@@ -108,6 +108,7 @@ fn numbers_out_of_range() {
         "(grass: (species: [(likes: (dwindle: 2))]))" => "1:38" "grass.species[0].likes.dwindle": "0 to 1";
         "(grass: (species: [(likes: ()), (name: \"b\")]))" => "1:33" "grass.species[1].likes": "to all or to none";
         "(grass: (species: [(likes: (), share: 0), (likes: ())]))" => "1:39" "grass.species[0].share": "never chosen";
+        "(grass: (cluster: 0))" => "1:19" "grass.cluster": "1 to 16 seeds";
         "(grass: (bare: [()]))" => "1:16" "grass.bare": "no species has `likes`";
         "(grass: (species: [(likes: ())], bare: [(), (), (), (), ()]))" => "1:40" "grass.bare": "at most 4";
         "(grass: (species: [(form: Flower(head_m: 0, petal_rgb: (1, 1, 1), centre_rgb: (1, 1, 0)))]))" => "1:42" "grass.species[0].form.head_m": "0.0001 to 1 m";

@@ -93,6 +93,7 @@ impl Stage {
                     full_m: 12.0,
                     reach_m: 40.0,
                     tuft: 1,
+                    ..BladeDetail::default()
                 },
             }),
             marks: &[],

@@ -65,6 +65,10 @@ struct FieldUniform {
     map_texels: vec2u,
     map_step: u32,
     taste_count: u32,
+    // Seeds of a cluster; 1 for seeds that lie alone.
+    cluster: u32,
+    spare_a: u32,
+    spare_b: vec2u,
     // Share of the wind's push that each segment takes, four a row.
     wind_shares: array<vec4f, 4>,
     species: array<SpeciesUniform, MAX_SPECIES>,

@@ -1,4 +1,5 @@
 // A plant from its seed. Twin: src/field/plant.rs; words agree bit for bit.
+#import "shared/clusters.wgsl"
 #import "shared/field.wgsl"
 #import "shared/ground.wgsl"
 #import "shared/kinds.wgsl"
@@ -34,16 +35,11 @@ fn along_leg(at_end: bool, word: u32) -> u32 {
     return select(word >> 8u, CELL_STEPS - (word >> 8u), at_end);
 }
 
-// Place in a seeding cell in 2⁻²⁴ of its side: P15 eq. 23-25 on the words.
-fn root_in_cell(cell: vec2u, half: u32, words: vec2u) -> vec2u {
-    var ab = words;
-    // A carry of the sum means r₁ + r₂ ≥ 1.
-    if ab.x + ab.y < ab.x {
-        ab = ~ab;
-    }
+// Place in a seeding cell in 2⁻²⁴ of its side, given the shares of both legs as words: P15 eq. 25.
+fn in_cell(cell: vec2u, half: u32, legs: vec2u) -> vec2u {
     let even = ((cell.x + cell.y) & 1u) == 0u;
     let second = half == 1u;
-    return vec2u(along_leg(even != second, ab.x), along_leg(second, ab.y));
+    return vec2u(along_leg(even != second, legs.x), along_leg(second, legs.y));
 }
 
 fn draw_between(range: vec2f, random: ptr<function, u32>) -> f32 {
@@ -66,6 +62,9 @@ struct Seed {
     // In 2⁻²⁴ of the cell's side.
     in_cell: vec2u,
     words: vec2u,
+    // Where its kind is looked up, and the word that chooses it: its own, or its cluster's.
+    middle: vec2u,
+    word: u32,
     // False beyond the ground's edge and past a triangle's own count.
     exists: bool,
 }
@@ -89,17 +88,27 @@ fn seed_at(tile: TileRecord, place: u32) -> Seed {
         }
     }
     let words = philox2x32(vec2u(triangle, index), field.key, field.rounds);
-    return Seed(cell, root_in_cell(cell, half, words), words, true);
+    if field.cluster > 1u {
+        let cluster = index / field.cluster;
+        let stratum = stratum_of(triangle, cluster);
+        let of_cluster =
+            philox2x32(vec2u(triangle, CLUSTER_WORD + cluster), field.key, field.rounds);
+        var random = pcg_from_words(of_cluster);
+        let root = in_cell(cell, half, within_stratum(stratum, words));
+        let middle = in_cell(cell, half, within_stratum(stratum, of_cluster));
+        return Seed(cell, root, words, middle, pcg_next(&random), true);
+    }
+    var random = pcg_from_words(words);
+    let root = in_cell(cell, half, folded(words));
+    return Seed(cell, root, words, root, pcg_next(&random), true);
 }
 
 // What grows of a seed.
 fn choice_of(tile: TileRecord, seed: Seed) -> Choice {
-    var random = pcg_from_words(seed.words);
-    let word = pcg_next(&random);
     if field.taste_count == 0u {
-        return by_share(word);
+        return by_share(seed.word);
     }
-    return choose_kind(place_on_map(tile.anchor_on_map, seed.cell, seed.in_cell), word);
+    return choose_kind(place_on_map(tile.anchor_on_map, seed.cell, seed.middle), seed.word);
 }
 
 // The plant of a seed, of a kind that is known.
@@ -112,7 +121,7 @@ fn plant_of(tile: TileRecord, seed: Seed, choice: Choice) -> Plant {
     plant.grows = true;
 
     var random = pcg_from_words(seed.words);
-    // The word of the choice.
+    // The word that chooses the kind of a seed that lies alone.
     pcg_next(&random);
     plant.species = choice.kind;
     // Eq. 18: on its own ground a plant is as large and stiff as its seed says.

@@ -2,6 +2,7 @@
 
 pub mod blade_shape;
 pub mod blade_table;
+pub mod clusters;
 pub mod count;
 pub mod grid;
 pub mod in_view;
@@ -85,7 +86,7 @@ impl Field {
     fn laid_out(ground: HeightGrid, grass: &Grass, solver: &Solver) -> Result<Self, FieldError> {
         let grid = FieldGrid::new(&ground, grass, solver)?;
         let table = BladeTable::new(grass, solver.segments, solver.root, solver.blade_table)?;
-        let seeds = Seeds::new(grass, solver.philox, &table);
+        let seeds = Seeds::new(grass, solver.philox, &table, &grid);
         let octree = Octree::new(&grid, &ground);
         let reach_m = grass
             .species

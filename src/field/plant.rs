@@ -1,7 +1,7 @@
 //! A plant is its seed: everything about it follows from (triangle id, plant index).
 //!
 //! P15 section 2.2 with eq. 23-25: two words from Philox-2x32 place the root on the seeding
-//! triangle, a small generator gives the rest. Deviations: the hash takes the triangle's integer
+//! triangle, alone or in a cluster; a small generator gives the rest. Deviations: the hash takes the triangle's integer
 //! id instead of float coordinates (exact on every machine), the reflection of eq. 23-24 is done on
 //! the words (exact), and a plant count with a fraction is rounded by a hash of the triangle, not
 //! cut off (the mean stays right). WGSL twin: `shaders/shared/plant.wgsl`; words agree bit for
@@ -13,6 +13,7 @@ use crate::scene::{Form, Grass, PhiloxRounds, Response, Species};
 use crate::terrain::HeightGrid;
 
 use super::blade_table::{BladeTable, SpeciesRange};
+use super::clusters::{CLUSTER_WORD, folded, stratum};
 use super::grid::{ANCHOR_CELLS, Anchor, FieldGrid, SeedPlace, TileId, ground_in_anchor};
 use super::kinds::{Choice, Kinds};
 
@@ -62,6 +63,8 @@ pub struct SpeciesNumbers {
 pub struct Seeds {
     pub key: u32,
     pub rounds: u32,
+    /// Seeds of a cluster; 1 for seeds that lie alone.
+    pub cluster: u32,
     pub species: Vec<SpeciesNumbers>,
     /// Where each kind grows; `None` for everywhere, by the shares alone.
     pub kinds: Option<Kinds>,
@@ -69,7 +72,12 @@ pub struct Seeds {
 
 impl Seeds {
     /// `table` says where each kind draws its stiffness and lean from.
-    pub fn new(grass: &Grass, philox: PhiloxRounds, table: &BladeTable) -> Self {
+    pub fn new(
+        grass: &Grass,
+        philox: PhiloxRounds,
+        table: &BladeTable,
+        grid: &FieldGrid,
+    ) -> Self {
         let total: f64 = grass.species.iter().map(|s| f64::from(s.share)).sum();
         let mut below = 0.0;
         let mut species: Vec<SpeciesNumbers> = grass
@@ -90,6 +98,12 @@ impl Seeds {
             rounds: match philox {
                 PhiloxRounds::Seven => 7,
                 PhiloxRounds::Paper => 3,
+            },
+            // P15: a triangle of fewer plants than a cluster has none.
+            cluster: if grid.sure_plants < grass.cluster {
+                1
+            } else {
+                grass.cluster
             },
             species,
             kinds: None,
@@ -122,14 +136,25 @@ impl Seeds {
             return None;
         }
         let words = philox2x32([triangle, index], self.key, self.rounds);
-        let in_cell = root_in_cell(cell, half, words);
         let mut random = Pcg::from_words(words);
-        let word = random.next_word();
+        let own_word = random.next_word();
+        let (legs, middle, word) = if self.cluster > 1 {
+            let cluster = index / self.cluster;
+            let stratum = stratum(triangle, cluster, self.key, self.rounds);
+            let of_cluster = philox2x32([triangle, CLUSTER_WORD + cluster], self.key, self.rounds);
+            let word = Pcg::from_words(of_cluster).next_word();
+            (stratum.within(words), stratum.within(of_cluster), word)
+        } else {
+            let legs = folded(words);
+            (legs, legs, own_word)
+        };
+        let in_cell = in_cell(cell, half, legs);
         let choice = match &self.kinds {
             None => self.by_share(word),
             Some(kinds) => {
                 let origin = kinds.anchor_on_map(grid, anchor);
-                kinds.choose(kinds.place_on_map(origin, cell, in_cell), word)
+                let middle = self::in_cell(cell, half, middle);
+                kinds.choose(kinds.place_on_map(origin, cell, middle), word)
             }
         };
         let species = choice.kind?;
@@ -186,17 +211,19 @@ impl Seeds {
 /// Steps that a seeding cell's side is divided into.
 pub const CELL_STEPS: u32 = 1 << 24;
 
-/// Place in a seeding cell along x and z, in 2⁻²⁴ of its side. Half 0 of an evenly cut cell has its
-/// right angle at (1, 0), half 1 at (0, 1); of an oddly cut one at (0, 0) and (1, 1). From the right
-/// angle both legs run along the axes, so that eq. 25 needs no vertices.
-fn root_in_cell(cell: [u32; 2], half: u32, words: [u32; 2]) -> [u32; 2] {
-    let [mut a, mut b] = words;
-    // Eq. 23-24: r₁ + r₂ ≥ 1, the carry of the sum, reflects both.
-    if a.checked_add(b).is_none() {
-        (a, b) = (!a, !b);
-    }
+/// Place in a seeding cell along x and z, in 2⁻²⁴ of its side, given the shares of both legs as
+/// words (eq. 25). Half 0 of an evenly cut cell has its right angle at (1, 0), half 1 at (0, 1); of
+/// an oddly cut one at (0, 0) and (1, 1). From the right angle both legs run along the axes, so that
+/// no vertices are needed.
+fn in_cell(cell: [u32; 2], half: u32, [a, b]: [u32; 2]) -> [u32; 2] {
     let even = (cell[0] + cell[1]) & 1 == 0;
-    let along = |at_end: bool, r: u32| if at_end { CELL_STEPS - (r >> 8) } else { r >> 8 };
+    let along = |at_end: bool, r: u32| {
+        if at_end {
+            CELL_STEPS - (r >> 8)
+        } else {
+            r >> 8
+        }
+    };
     [along(even != (half == 1), a), along(half == 1, b)]
 }
 

@@ -13,6 +13,7 @@ use super::passes::{MOST_GROUPS, WORKGROUP};
 use super::tick_data::{SOLID_BALL, SOLID_BOX, SOLID_CAPSULE, SOLID_CONVEX, SOLID_CYLINDER};
 use crate::base::fixed::{EXP2_TABLE, LOG2_TABLE};
 use crate::base::trig::SINE_QUARTER;
+use crate::field::clusters::{CLUSTER_WORD, GRID_WORD};
 use crate::field::grid::ANCHOR_CELLS;
 use crate::field::kinds::{HUE_TURN, LEAST_SQUARED, MAX_TASTES};
 use crate::field::plant::{CELL_STEPS, MAX_SPECIES};
@@ -116,6 +117,7 @@ macro_rules! wgsl_file {
 
 /// Files that any layer's shaders may import.
 pub const SHARED: &[WgslFile] = &[
+    wgsl_file!("shared/clusters.wgsl", CLUSTER_WORD, GRID_WORD),
     wgsl_file!("shared/contact.wgsl", FACE_MASK, NO_FACE),
     wgsl_file!(
         "shared/cube.wgsl",

@@ -2,7 +2,7 @@
 
 use crate::bodies::RigidShape;
 use crate::field::Field;
-use crate::gpu::{Gpu, PassTimer};
+use crate::gpu::{FieldBuffers, Gpu, PassTimer};
 use crate::terrain::bintree::MeshChange;
 
 use super::blade_tiles::Size;
@@ -12,7 +12,7 @@ use super::error::RenderError;
 use super::ground_look::{GroundLook, GroundTexture};
 use super::ground_mesh::TerrainDetail;
 use super::overlay::{OverlayLayer, TileMark};
-use super::plants::{BladeCounts, BladesInput, Canopy, DrawnPlants, PlantsLayer};
+use super::plants::{BladeCounts, BladesInput, DrawnPlants, PlantsLayer};
 use super::shadow::{ShadowFit, ShadowMap};
 use super::sky::{SkyLayer, Sun};
 use super::targets::{Targets, most_samples};
@@ -97,10 +97,10 @@ impl Renderer {
         shapes: &[RigidShape],
     ) -> Result<(), RenderError> {
         let colour = GroundTexture::new(gpu, look.map)?;
-        let canopy = Canopy::of(field);
+        let buffers = FieldBuffers::new(gpu, &FieldBuffers::layout(gpu), field)?;
         self.terrain
-            .set_ground(gpu, field, &colour, look.soil_rgb, canopy)?;
-        self.plants.set_field(gpu, field, &colour)?;
+            .set_ground(gpu, field, &buffers, &colour, look.soil_rgb)?;
+        self.plants.set_field(field, buffers, &colour);
         self.set_shapes(gpu, shapes)
     }
 
@@ -175,6 +175,7 @@ impl Renderer {
         self.plants.draw(&mut pass);
         self.groups.bind(&mut pass);
         self.terrain.draw(&mut pass);
+        self.groups.bind(&mut pass);
         self.sky.draw(&mut pass);
         self.overlay.draw(&mut pass);
         drop(pass);

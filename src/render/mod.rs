@@ -57,7 +57,10 @@ use blade_tiles::WIDEN_POWER;
 use blades::{TUFT_RADIUS_M, TUFT_TURNS};
 use plant_form::{BUCKET_VERTICES, BUCKETS, DETAILS, FORM_BLADE, FORM_COUNT};
 use sort_plants::{COUNT_BY_DISTANCE, COUNT_BY_PROJECTED_AREA, LEAST_GROWN, NO_BUCKET};
-use terrain::{CHUNK_SAMPLES, LAND_RINGS_M};
+use terrain::{
+    CHUNK_SAMPLES, LAND_RINGS_M, LOOK_BARE, LOOK_GRASS, LOOK_GRAVEL, LOOK_LITTER, TASTE_ROWS,
+};
+use crate::field::kinds::MAX_TASTES;
 
 /// Format in which light is added up before it is shown.
 const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -94,7 +97,17 @@ pub const SHADERS: &[WgslFile] = &[
         WIDEN_POWER,
         WORKGROUP
     ),
-    wgsl_file!("terrain.wgsl", CHUNK_SAMPLES, LAND_RINGS_M),
+    wgsl_file!(
+        "terrain.wgsl",
+        CHUNK_SAMPLES,
+        LAND_RINGS_M,
+        LOOK_BARE,
+        LOOK_GRASS,
+        LOOK_GRAVEL,
+        LOOK_LITTER,
+        MAX_TASTES,
+        TASTE_ROWS
+    ),
     wgsl_file!("tonemap.wgsl"),
     wgsl_file!("twigs.wgsl"),
 ];

@@ -147,7 +147,6 @@ pub(super) struct PlantsLayer {
     /// One per form.
     pipelines: Vec<wgpu::RenderPipeline>,
     layout: wgpu::BindGroupLayout,
-    field_layout: wgpu::BindGroupLayout,
     look: Buffer<PlantLook>,
     sort: PlantSort,
     scene: Option<PlantScene>,
@@ -197,7 +196,6 @@ impl PlantsLayer {
         });
         Ok(Self {
             pipelines: pipelines.collect::<Result<_, _>>()?,
-            field_layout,
             look: Buffer::new(gpu, "plant look", 1, BufferUsages::UNIFORM)?,
             sort: PlantSort::new(gpu)?,
             layout,
@@ -209,27 +207,20 @@ impl PlantsLayer {
     }
 
     /// Takes a field in place of the old one.
-    ///
-    /// # Errors
-    /// A field larger than the device can bind.
     pub(super) fn set_field(
         &mut self,
-        gpu: &Gpu,
         field: &Field,
+        buffers: FieldBuffers,
         colour: &GroundTexture,
-    ) -> Result<(), GpuError> {
+    ) {
         self.clear();
-        self.scene = None;
-        if !field.is_bare() {
-            self.scene = Some(PlantScene {
-                buffers: FieldBuffers::new(gpu, &self.field_layout, field)?,
-                colour: colour.clone(),
-                cover: Canopy::of(field).cover,
-                kinds: field.seeds.species.iter().map(|kind| kind.form).collect(),
-                group: None,
-            });
-        }
-        Ok(())
+        self.scene = (!field.is_bare()).then(|| PlantScene {
+            buffers,
+            colour: colour.clone(),
+            cover: Canopy::of(field).cover,
+            kinds: field.seeds.species.iter().map(|kind| kind.form).collect(),
+            group: None,
+        });
     }
 
     /// Leaves the plants out of the next frame.

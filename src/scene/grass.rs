@@ -14,6 +14,10 @@ pub struct Grass {
     pub density_per_m2: f32,
     /// Key of the random numbers of every plant.
     pub seed: u32,
+    /// Seeds of a cluster, which lie together and are of one kind: P15 section 3.4. 1 for plants that
+    /// stand alone.
+    #[schemars(range(min = limits::CLUSTER.min, max = limits::CLUSTER.max))]
+    pub cluster: u32,
     /// Kinds of plants; at most 8. An empty list grows nothing.
     #[schemars(length(max = limits::SPECIES))]
     pub species: Vec<Species>,
@@ -35,6 +39,7 @@ impl Default for Grass {
         Self {
             density_per_m2: 256.0,
             seed: 1,
+            cluster: 1,
             species: vec![Species::default()],
             bare: Vec::new(),
         }

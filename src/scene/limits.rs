@@ -76,6 +76,8 @@ pub const PLANTS_PER_TILE: u64 = 65_536;
 
 pub const PLANT_DENSITY: Range = range(0.0, 10_000.0, "plants/m2");
 pub const SPECIES: usize = 8;
+/// Seeds of a cluster.
+pub const CLUSTER: Range = range(1.0, 16.0, "seeds");
 /// Grounds on which nothing grows.
 pub const BARE_GROUNDS: usize = 4;
 /// Hue of a reference colour.

@@ -100,8 +100,8 @@ pub fn still() -> Result<Meadow, Failed> {
     Ok(Meadow::new(loaded.scene, &loaded.assets)?)
 }
 
-/// The same, with kinds that grow where a base map of coloured noise has what they like.
-pub fn coloured_field(solver: &Solver) -> Result<Field, Failed> {
+/// The same in clusters, with kinds that grow where a base map of coloured noise has what they like.
+pub fn coloured_field(solver: &Solver, cluster: u32) -> Result<Field, Failed> {
     let mut ground = HeightGrid::flat(14, 11, 1.0);
     for (n, height) in ground.heights_m.iter_mut().enumerate() {
         *height = 2.3 + 0.8 * (TAU * n as f32 * 0.137).sin();
@@ -121,6 +121,7 @@ pub fn coloured_field(solver: &Solver) -> Result<Field, Failed> {
     let grass = Grass {
         density_per_m2: 203.7,
         seed: 78,
+        cluster,
         species: vec![
             kind("green", liking([110.0, 0.6, 0.4], 3.0, 0.7), 1.0),
             kind("red", liking([350.0, 0.5, 0.6], 2.0, 0.0), 0.6),

@@ -199,15 +199,20 @@ pub fn plants_are_equal(device: &Device) -> Result<(), Failed> {
 pub fn kinds_by_colour_are_equal(device: &Device) -> Result<(), Failed> {
     let mut drawn = Difference::new("height and stiffness", "ulp");
     let (mut kinds, mut bare) = ([0_u32; 3], 0_u32);
-    for tile_m in [0.5, 2.0] {
+    for (tile_m, cluster) in [(0.5, 1), (2.0, 1), (1.0, 4)] {
         let solver = Solver {
             tile_m,
             ..Solver::default()
         };
-        probed_field(device, coloured_field(&solver)?)?.each(|name, _, plant, rows| {
-            let want = plant.map(|plant| (plant.species, plant.shade));
-            let got = (rows[0][3] == 1).then(|| (rows[2][2], rows[2][3]));
-            ensure(got == want, || format!("{name}: {got:?} for {want:?}"))?;
+        let field = coloured_field(&solver, cluster)?;
+        probed_field(device, field)?.each(|name, _, plant, rows| {
+            let want = plant.map(|plant| {
+                let [x, _, z] = plant.root_in_anchor;
+                [plant.species, plant.shade, x.to_bits(), z.to_bits()]
+            });
+            let grown = [rows[2][2], rows[2][3], rows[0][0], rows[0][2]];
+            let got = (rows[0][3] == 1).then_some(grown);
+            ensure(got == want, || format!("{name}: {got:x?} for {want:x?}"))?;
             let Some(plant) = plant else {
                 bare += 1;
                 return Ok(());

@@ -59,6 +59,7 @@ pub(super) fn grass(key: &Key, grass: &Grass) -> Check {
         density,
         &limits::PLANT_DENSITY,
     )?;
+    within(&key.field("cluster"), grass.cluster, &limits::CLUSTER)?;
     let bare = key.field("bare");
     let key = key.field("species");
     at_most(&key, grass.species.len(), limits::SPECIES, "species")?;
