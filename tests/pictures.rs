@@ -15,6 +15,9 @@ use sward::scene::Scene;
 use sward::sim::{Grass, Meadow, tick};
 use sward::terrain::ColourMap;
 
+#[path = "pictures/counted.rs"]
+mod counted;
+
 type Check = fn(&Gpu) -> Result<(), Failed>;
 
 const CHECKS: &[(&str, Check)] = &[
@@ -32,6 +35,14 @@ const CHECKS: &[(&str, Check)] = &[
     (
         "a_coarser_ground_looks_like_the_full_one",
         a_coarser_ground_looks_like_the_full_one,
+    ),
+    (
+        "plants_are_sorted_by_form",
+        counted::plants_are_sorted_by_form,
+    ),
+    (
+        "density_follows_the_equations",
+        counted::density_follows_the_equations,
     ),
     (
         "what_cannot_be_drawn_is_refused",

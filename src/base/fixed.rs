@@ -82,7 +82,10 @@ mod tests {
             let got = f64::from(log2_q12(x));
             assert!((got - want).abs() <= 1.25, "{x}: {got} for {want}");
         }
-        assert_eq!([log2_q12(1), log2_q12(2), log2_q12(1 << 31)], [0, 4096, 31 << 12]);
+        assert_eq!(
+            [log2_q12(1), log2_q12(2), log2_q12(1 << 31)],
+            [0, 4096, 31 << 12]
+        );
     }
 
     #[test]

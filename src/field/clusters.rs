@@ -58,7 +58,8 @@ impl Stratum {
         let width = u32::MAX / self.side;
         let is_cut = self.at[0] + self.at[1] == self.side - 1;
         let [a, b] = if is_cut { folded(words) } else { words };
-        let at = |n: u32, word: u32| n * width + ((u64::from(word) * u64::from(width)) >> 32) as u32;
+        let at =
+            |n: u32, word: u32| n * width + ((u64::from(word) * u64::from(width)) >> 32) as u32;
         [at(self.at[0], a), at(self.at[1], b)]
     }
 }

@@ -36,7 +36,10 @@ pub fn by_projected_area(corners: [Vec3<f32>; 3], view: &CountView, per_px: f32,
     }
     let [a, b, c] = [0, 1, 2].map(|i| {
         let px = 1.0 / (depths[i] * view.pixel_rad);
-        [corners[i].dot(view.right) * px, corners[i].dot(view.up) * px]
+        [
+            corners[i].dot(view.right) * px,
+            corners[i].dot(view.up) * px,
+        ]
     });
     let area_px = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
     (per_px * area_px).min(most)
@@ -46,7 +49,11 @@ pub fn by_projected_area(corners: [Vec3<f32>; 3], view: &CountView, per_px: f32,
 pub fn by_world_area(corners: [Vec3<f32>; 3], view: &CountView, per_px: f32, most: f32) -> f32 {
     let [a, b, c] = corners;
     let across = (b - a).cross(c - a);
-    let upwards = if across.y < 0.0 { across * -1.0 } else { across };
+    let upwards = if across.y < 0.0 {
+        across * -1.0
+    } else {
+        across
+    };
     let middle = (a + b + c) * (1.0 / 3.0);
     let away = middle.dot(middle).max(NEAR_M * NEAR_M);
     // Twice the area times the cosine, over the distance.
@@ -107,7 +114,10 @@ mod tests {
             let [projected, world] =
                 [by_projected_area, by_world_area].map(|rule| rule(far, &view(), 1.0, 1e9));
             // The middle lies 5.7° below the axis: 1/cos³ of that is 1.5% more on the picture.
-            assert!((projected / world - 1.015).abs() < 0.01, "{projected} {world}");
+            assert!(
+                (projected / world - 1.015).abs() < 0.01,
+                "{projected} {world}"
+            );
         }
         let below = triangle(0.0, 1.0, -5.0, 0.5);
         assert_eq!(by_world_area(below, &view(), 1.0, 9.0), 0.0);
@@ -117,7 +127,11 @@ mod tests {
     /// of a rounded fraction (at most ½ each), which is below the 2% that are asked for.
     #[test]
     fn rounding_keeps_the_mean_and_prefixes_stay() {
-        let field = Field::new(HeightGrid::flat(9, 9, 1.0), &Grass::default(), &Solver::default());
+        let field = Field::new(
+            HeightGrid::flat(9, 9, 1.0),
+            &Grass::default(),
+            &Solver::default(),
+        );
         let seeds = field.expect("a field").seeds;
         let triangles = 4000;
         for count in [0.3_f32, 1.7, 6.25, 20.5] {
@@ -132,7 +146,10 @@ mod tests {
             }
             let mean = total as f64 / f64::from(triangles);
             let spread = 5.0 * 0.5 / f64::from(triangles).sqrt();
-            assert!((mean - f64::from(count)).abs() < spread, "{mean} for {count}");
+            assert!(
+                (mean - f64::from(count)).abs() < spread,
+                "{mean} for {count}"
+            );
         }
         assert_eq!(shown(10.0, 0.0, 2), 1.0);
     }

@@ -94,7 +94,12 @@ impl Kinds {
     }
 
     /// Place on the map of a place in a cell, both in units of 2⁻²⁴ cell.
-    pub fn place_on_map(&self, anchor_on_map: [u32; 2], cell: [u32; 2], in_cell: [u32; 2]) -> [u32; 2] {
+    pub fn place_on_map(
+        &self,
+        anchor_on_map: [u32; 2],
+        cell: [u32; 2],
+        in_cell: [u32; 2],
+    ) -> [u32; 2] {
         [0, 1].map(|a| {
             let in_anchor = ((cell[a] % ANCHOR_CELLS) << 24) + in_cell[a];
             // The far end of the last cell would carry.
@@ -213,8 +218,14 @@ fn taste(likes: &Likes, share: f32) -> Taste {
     let [h, s, v] = likes.hsv.map(f64::from);
     let hue = (h / 360.0 * f64::from(HUE_TURN)).round() as u32 % HUE_TURN;
     Taste {
-        hsv: [hue, (s * 65_536.0).round() as u32, (v * 65_535.0).round() as u32],
-        weights: likes.weights.map(|w| (f64::from(w) * 4096.0).round() as u32),
+        hsv: [
+            hue,
+            (s * 65_536.0).round() as u32,
+            (v * 65_535.0).round() as u32,
+        ],
+        weights: likes
+            .weights
+            .map(|w| (f64::from(w) * 4096.0).round() as u32),
         exponent: (f64::from(likes.exponent) * 256.0).round() as u32,
         share_log: log(share),
         threshold_log: if likes.threshold > 0.0 {

@@ -27,8 +27,8 @@ pub use wind::WindNow;
 use std::sync::Arc;
 
 use crate::scene::{Grass, Solver};
-use crate::terrain::{ColourMap, HeightGrid};
 use crate::terrain::bintree::Bintree;
+use crate::terrain::{ColourMap, HeightGrid};
 
 /// Everything about a meadow that does not change while it is simulated.
 #[derive(Clone, Debug)]
@@ -113,7 +113,9 @@ impl Field {
     /// The same, if it is of a kind that bodies push aside.
     pub fn responding_plant(&self, anchor: &Anchor, tile: TileId, place: u32) -> Option<Plant> {
         let plant = self.plant(anchor, tile, place)?;
-        self.seeds.species[plant.species as usize].bends.then_some(plant)
+        self.seeds.species[plant.species as usize]
+            .bends
+            .then_some(plant)
     }
 
     /// Whether anything grows here at all.

@@ -72,12 +72,7 @@ pub struct Seeds {
 
 impl Seeds {
     /// `table` says where each kind draws its stiffness and lean from.
-    pub fn new(
-        grass: &Grass,
-        philox: PhiloxRounds,
-        table: &BladeTable,
-        grid: &FieldGrid,
-    ) -> Self {
+    pub fn new(grass: &Grass, philox: PhiloxRounds, table: &BladeTable, grid: &FieldGrid) -> Self {
         let total: f64 = grass.species.iter().map(|s| f64::from(s.share)).sum();
         let mut below = 0.0;
         let mut species: Vec<SpeciesNumbers> = grass
@@ -177,13 +172,7 @@ impl Seeds {
     }
 
     /// The plant of a kind that thrives by so many 2⁻¹⁶ parts.
-    fn grow(
-        &self,
-        mut random: Pcg,
-        species: u32,
-        thrives: u32,
-        root_in_anchor: [f32; 3],
-    ) -> Plant {
+    fn grow(&self, mut random: Pcg, species: u32, thrives: u32, root_in_anchor: [f32; 3]) -> Plant {
         let kind = &self.species[species as usize];
         // Eq. 18: on its own ground a plant is as large and stiff as its seed says.
         let vigour = 1.0 - kind.dwindle * (1.0 - thrives as f32 * (1.0 / 65_536.0));

@@ -183,11 +183,7 @@ fn sight_of(
 }
 
 /// Tiles in sight as the device gets them, near to far.
-pub(super) fn drawn_tiles(
-    input: &BladesInput<'_>,
-    view: &View,
-    picture: Size,
-) -> Vec<DrawnTile> {
+pub(super) fn drawn_tiles(input: &BladesInput<'_>, view: &View, picture: Size) -> Vec<DrawnTile> {
     let seen = tiles_in_sight(input, view, picture.aspect());
     seen.iter()
         .map(|sight| drawn_tile(input, view, picture, sight))

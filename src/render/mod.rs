@@ -45,14 +45,15 @@ pub use plants::{BladeCounts, BladesInput, DrawnPlants};
 pub use sky::{Daylight, Sun};
 pub use tonemap::Exposure;
 
+use crate::field::count::{COUNT_WORD, NEAR_M};
+use crate::field::grid::ANCHOR_CELLS;
+use crate::field::kinds::MAX_TASTES;
+use crate::field::plant::MAX_SPECIES;
 use crate::gpu::GpuStruct;
 use crate::gpu::layout::StructLayout;
+use crate::gpu::passes::WORKGROUP;
 use crate::gpu::wgsl::WgslFile;
 use crate::wgsl_file;
-use crate::field::grid::ANCHOR_CELLS;
-use crate::field::plant::MAX_SPECIES;
-use crate::gpu::passes::WORKGROUP;
-use crate::field::count::{COUNT_WORD, NEAR_M};
 use blade_tiles::WIDEN_POWER;
 use blades::{TUFT_RADIUS_M, TUFT_TURNS};
 use plant_form::{BUCKET_VERTICES, BUCKETS, DETAILS, FORM_BLADE, FORM_COUNT};
@@ -60,7 +61,6 @@ use sort_plants::{COUNT_BY_DISTANCE, COUNT_BY_PROJECTED_AREA, LEAST_GROWN, NO_BU
 use terrain::{
     CHUNK_SAMPLES, LAND_RINGS_M, LOOK_BARE, LOOK_GRASS, LOOK_GRAVEL, LOOK_LITTER, TASTE_ROWS,
 };
-use crate::field::kinds::MAX_TASTES;
 
 /// Format in which light is added up before it is shown.
 const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -68,7 +68,12 @@ const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// The shaders of this layer and what only they import.
 pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/count.wgsl", ANCHOR_CELLS, COUNT_WORD, NEAR_M),
-    wgsl_file!("shared/drawn_plant.wgsl", BUCKET_VERTICES, BUCKETS, MAX_SPECIES),
+    wgsl_file!(
+        "shared/drawn_plant.wgsl",
+        BUCKET_VERTICES,
+        BUCKETS,
+        MAX_SPECIES
+    ),
     wgsl_file!("shared/drawn_tile.wgsl"),
     wgsl_file!("shared/frame.wgsl"),
     wgsl_file!("shared/light.wgsl"),

@@ -24,7 +24,7 @@ pub(super) const COUNT_BY_DISTANCE: u32 = 0;
 pub(super) const COUNT_BY_PROJECTED_AREA: u32 = 1;
 const COUNT_BY_WORLD_AREA: u32 = 2;
 /// Plants smaller than this share of their size are left out.
-pub(super) const LEAST_GROWN: f32 = 0.02;
+pub(super) const LEAST_GROWN: f32 = 0.005;
 
 gpu_struct! {
     pub(super) struct CountUniform {
@@ -146,7 +146,12 @@ impl PlantSort {
             tiles: Buffer::new(gpu, "drawn tiles", 1024, storage)?,
             totals: Buffer::new(gpu, "plants per bucket", buckets, storage)?,
             sorted: Buffer::new(gpu, "sorted plants", 0, storage)?,
-            draws: Buffer::new(gpu, "plant draws", buckets, storage | BufferUsages::INDIRECT)?,
+            draws: Buffer::new(
+                gpu,
+                "plant draws",
+                buckets,
+                storage | BufferUsages::INDIRECT,
+            )?,
             count: 0,
         })
     }
@@ -178,9 +183,10 @@ impl PlantSort {
         reserve(gpu, &mut self.candidates, places)?;
         reserve(gpu, &mut self.slots, places)?;
         reserve(gpu, &mut self.job_counts, jobs.len() * BUCKETS as usize)?;
-        let grown = self.tiles.write_or_grow(gpu, input.tiles)?
-            | reserve(gpu, &mut self.sorted, places)?;
-        self.uniform.write(gpu, 0, &[sort_uniform(input, self.count)])?;
+        let grown =
+            self.tiles.write_or_grow(gpu, input.tiles)? | reserve(gpu, &mut self.sorted, places)?;
+        self.uniform
+            .write(gpu, 0, &[sort_uniform(input, self.count)])?;
         Ok(grown)
     }
 
@@ -233,7 +239,9 @@ fn reserve<T: bytemuck::Pod>(
     if len <= buffer.len() {
         return Ok(false);
     }
-    *buffer = buffer.of_len(gpu, len + len / 2).or_else(|_| buffer.of_len(gpu, len))?;
+    *buffer = buffer
+        .of_len(gpu, len + len / 2)
+        .or_else(|_| buffer.of_len(gpu, len))?;
     Ok(true)
 }
 

@@ -22,8 +22,8 @@ use super::camera::View;
 use super::error::RenderError;
 use super::ground_look::GroundTexture;
 use super::ground_mesh::{GroundMesh, TerrainDetail};
-use super::plants::{BladesInput, Canopy};
 use super::pipeline::{DepthUse, Drawing, READ_STORAGE, UNIFORM, bind_group, group_layout};
+use super::plants::{BladesInput, Canopy};
 use super::view_group::ViewGroups;
 
 /// Samples along a chunk's side; one less is its number of squares, an even number.

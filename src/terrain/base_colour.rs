@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use crate::scene::Terrain;
 use crate::scene::assets::{Assets, ColourPicture};
 
-use super::{HeightGrid, TerrainError};
 use super::noise::value_noise;
+use super::{HeightGrid, TerrainError};
 
 /// Finest texel of a colour map, in metres: the finest noise is five times as long.
 const FINEST_TEXEL_M: f64 = 1.0 / 16.0;
@@ -229,7 +229,10 @@ mod tests {
             base_map: Some("map.png".into()),
             ..Terrain::default()
         };
-        assert!(ColourMap::of(&terrain, &ground, &assets).is_err_and(|e| e.to_string().contains("map.png")));
+        assert!(
+            ColourMap::of(&terrain, &ground, &assets)
+                .is_err_and(|e| e.to_string().contains("map.png"))
+        );
         let picture = ColourPicture {
             columns: 4,
             rows: 2,

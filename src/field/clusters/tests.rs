@@ -142,7 +142,11 @@ fn folding_spreads_clusters_better_than_the_square_root() {
     };
     let square_root = |[r1, r2]: [f64; 2]| [r1.sqrt() * (1.0 - r2), r1.sqrt() * r2];
     let fold = |[a, b]: [f64; 2]| {
-        if a + b >= 1.0 { [1.0 - a, 1.0 - b] } else { [a, b] }
+        if a + b >= 1.0 {
+            [1.0 - a, 1.0 - b]
+        } else {
+            [a, b]
+        }
     };
     for clusters in [18, 40, 70] {
         let [root, folded] = [spread(clusters, &square_root), spread(clusters, &fold)];

@@ -9,7 +9,10 @@ fn map(colours: [[u8; 3]; 8]) -> Arc<ColourMap> {
         columns: 8,
         rows: 1,
         texel_m: 2.0,
-        rgba8: colours.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect(),
+        rgba8: colours
+            .iter()
+            .flat_map(|&[r, g, b]| [r, g, b, 255])
+            .collect(),
     })
 }
 
@@ -55,7 +58,10 @@ fn score(likes: &Likes, [r, g, b]: [f64; 3]) -> f64 {
     ];
     let weighted = differences.iter().zip(&likes.weights);
     let squared: f64 = weighted.map(|(d, &w)| (d * f64::from(w)).powi(2)).sum();
-    squared.sqrt().max(1.0 / 128.0).powf(-f64::from(likes.exponent))
+    squared
+        .sqrt()
+        .max(1.0 / 128.0)
+        .powf(-f64::from(likes.exponent))
 }
 
 /// Distances are exact to 2⁻¹² (each of three differences cut off, then its product), scores with
@@ -81,7 +87,10 @@ fn scores_are_those_of_the_equation() {
         let got = (f64::from(log.expect("no threshold")) / 4096.0).exp2();
         // Hue and saturation of a dark colour hang on its rounding: V is 1/256 too large at most.
         let tolerance = 0.05;
-        assert!((got / want - 1.0).abs() < tolerance, "{rgb:?}: {got} for {want}");
+        assert!(
+            (got / want - 1.0).abs() < tolerance,
+            "{rgb:?}: {got} for {want}"
+        );
         checked += 1;
     }
     assert!(checked > 3000, "{checked}");
@@ -104,7 +113,10 @@ fn a_kind_grows_where_its_colour_is() {
     assert_eq!(share_of_brown(7.0), 1.0);
     // Between the middles of two texels the mixed colour decides, not a line between them.
     let shares = [3.6, 3.9, 4.0, 4.1, 4.4].map(share_of_brown);
-    assert!(shares.is_sorted() && shares[0] < 0.05 && shares[4] > 0.95, "{shares:?}");
+    assert!(
+        shares.is_sorted() && shares[0] < 0.05 && shares[4] > 0.95,
+        "{shares:?}"
+    );
 }
 
 /// z < s₁/(s₀ + s₁): the share of the second is what eq. 16 says, and s′ what eq. 18 says.
@@ -114,7 +126,9 @@ fn the_choice_is_in_proportion_to_the_scores() {
     let map = map([colour; 8]);
     let likes = [liking([70.0, 0.3, 0.4]), liking([110.0, 0.6, 0.6])];
     let kinds = kinds(&likes, &[], map);
-    let scores = likes.clone().map(|l| score(&l, colour.map(|b| f64::from(b) / 255.0)));
+    let scores = likes
+        .clone()
+        .map(|l| score(&l, colour.map(|b| f64::from(b) / 255.0)));
     let want = scores[1] / (scores[0] + scores[1]);
     assert!(want > 0.05 && want < 0.5, "a bad case: {scores:?}");
     let count = 40_000;
@@ -122,8 +136,15 @@ fn the_choice_is_in_proportion_to_the_scores() {
     for n in 0..count {
         let choice = kinds.choose([3 << 16, 1 << 15], philox2x32([n, 2], 3, 7)[0]);
         let share = f64::from(choice.thrives) / 65_536.0;
-        let own = if choice.kind == Some(1) { want } else { 1.0 - want };
-        assert!((share - own).abs() < 0.01, "{choice:?}: s' {share} for {own}");
+        let own = if choice.kind == Some(1) {
+            want
+        } else {
+            1.0 - want
+        };
+        assert!(
+            (share - own).abs() < 0.01,
+            "{choice:?}: s' {share} for {own}"
+        );
         second += u32::from(choice.kind == Some(1));
     }
     let got = f64::from(second) / f64::from(count);

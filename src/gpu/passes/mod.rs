@@ -88,7 +88,8 @@ impl Kernel {
             name: "WORKGROUP",
             value: workgroup.into(),
         };
-        let source = wgsl::assemble_with(pass_file(library, path)?, &[library, wgsl::SHARED], &[size])?;
+        let source =
+            wgsl::assemble_with(pass_file(library, path)?, &[library, wgsl::SHARED], &[size])?;
         let field = FieldBuffers::layout(gpu);
         Ok(Self {
             pipeline: gpu.compute_pipeline(&source, name, &[&field, &layout])?,

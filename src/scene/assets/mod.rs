@@ -94,7 +94,8 @@ pub(super) fn read_assets(
             continue;
         }
         let mesh = if assets.meshes.len() + assets.height_maps.len() + assets.base_maps.len()
-            < ASSET_FILES {
+            < ASSET_FILES
+        {
             read_mesh(file, source)
         } else {
             Err(AssetError::OverBudget {
