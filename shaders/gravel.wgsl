@@ -59,10 +59,10 @@ fn stone_vertex(
     );
     let ground = ground_rgb(drawn) * field.species[plant.species].tint_rgb;
     let warmth = 0.9 + 0.2 * shade_byte(plant, 1u);
-    let surface = ground * (0.65 + 0.7 * shade_byte(plant, 0u)) * vec3f(warmth, 1.0, 2.0 - warmth);
+    let surface = ground * (0.75 + 0.65 * shade_byte(plant, 0u)) * vec3f(warmth, 1.0, 2.0 - warmth);
     // Low parts see less of the sky, past other stones.
     let low = saturate(0.7 - 0.5 * shaped.y / max(half_m.y * widened, 1e-6));
-    let light = light_between(mix(plant_look.cover, 0.35, drawn.thrives), low, position);
+    let light = light_between(local_cover(drawn), low, position);
     let radiance = through_air(dull_radiance(surface, normal, light), position);
     let clip = frame.clip_from_eye * vec4f(position, 1.0);
     return StonePoint(clip, radiance, local * 3.0, 1.33 / (widened * widened));

@@ -46,7 +46,7 @@ fn leaf_vertex(
     let position = centre + across * (side * out) + facing_up * (FOLD * out);
     let folded = normalize(facing_up - across * (side * FOLD));
     let depth = below_top(along, pose.place.y - plant.root.y, pose.pressed);
-    let light = light_between(plant_look.cover * (1.0 - 0.6 * drawn.thrives), depth, position);
+    let light = light_between(local_cover(drawn), depth, position);
     let radiance = leaf_radiance(plant_rgb(drawn), folded, light, position);
     let clip = frame.clip_from_eye * vec4f(position, 1.0);
     let uv = vec2f(side * select(0.0, 1.0, is_outer), along);

@@ -44,7 +44,7 @@ struct DrawArgs {
 @group(1) @binding(0) var<uniform> sorting: SortUniform;
 @group(1) @binding(1) var<storage, read> drawn_tiles: array<DrawnTile>;
 @group(1) @binding(2) var<storage, read> jobs: array<Job>;
-// Tile, rank, kind and how it thrives, and halves: share of its size and factor of its width.
+// Tile, rank, kind and how it thrives, and halves: share of its size and one over its width's factor.
 @group(1) @binding(3) var<storage, read_write> candidates: array<vec4u>;
 // The candidates' buckets, NO_BUCKET for what is not seen, and above them ranks within the job.
 @group(1) @binding(8) var<storage, read_write> slots: array<u32>;
@@ -119,9 +119,9 @@ fn candidate_at(tile_index: u32, rank: u32) -> Candidate {
         return none;
     }
     // The drawn plants' width makes up for most of those left out.
-    let widen = pow(max(count / sorting.count.most, 1e-4), -WIDEN_POWER);
+    let narrow = pow(saturate(count / sorting.count.most), WIDEN_POWER);
     let what = (choice.kind << 20u) | choice.thrives;
-    let entry = vec4u(tile_index, rank, what, pack2x16float(vec2f(grown, widen)));
+    let entry = vec4u(tile_index, rank, what, pack2x16unorm(vec2f(grown, narrow)));
     return Candidate(entry, form * DETAILS + drawn.detail);
 }
 

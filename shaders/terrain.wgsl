@@ -256,7 +256,7 @@ fn litter_floor(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
     let leaves = mix(0.5, value_noise(place * vec2f(19.0, 24.0)), detail_weight(0.05, pixel_m));
     let edges = mix(0.5, value_noise(place * 60.0 + 3.0), detail_weight(0.016, pixel_m));
     let pale = mix(0.5, cloudy_noise(place * 7.0 + 6.0), detail_weight(0.14, pixel_m));
-    let rgb = base * mix(vec3f(0.9, 0.85, 0.8), vec3f(1.5, 1.2, 0.8), pale);
+    let rgb = base * mix(vec3f(0.85, 0.85, 0.85), vec3f(1.25, 1.1, 0.9), pale);
     return Surface(rgb * (0.45 + 0.6 * leaves + 0.3 * edges), 0.012 * leaves, 0.72);
 }
 
@@ -266,10 +266,13 @@ fn bare_floor(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
     return Surface(base * (0.6 + 0.6 * lumps + 0.2 * grains), 0.012 * lumps, 0.95);
 }
 
+// Distance from the field's edge within which kinds by colour end.
+const LAND_BLENDS_M = 8.0;
+
 // Shares of the looks at a place: eq. 17's weights, the scores of the kinds and bare grounds.
-fn look_shares(uv: vec2f) -> vec4f {
+fn look_shares(uv: vec2f, beyond_m: f32) -> vec4f {
     var shares = vec4f(0.0);
-    if field.taste_count == 0u {
+    if field.taste_count == 0u || beyond_m > LAND_BLENDS_M {
         shares[LOOK_GRASS] = 1.0;
         return shares;
     }
@@ -289,7 +292,11 @@ fn look_shares(uv: vec2f) -> vec4f {
     for (var i = 0u; i < field.taste_count; i++) {
         shares[ground.looks[i >> 2u][i & 3u]] += exp2(max(logs[i] - best, -60.0));
     }
-    return shares / dot(shares, vec4f(1.0));
+    // The land around the field is grass.
+    let land = smoothstep(0.0, LAND_BLENDS_M, beyond_m);
+    shares *= (1.0 - land) / dot(shares, vec4f(1.0));
+    shares[LOOK_GRASS] += land;
+    return shares;
 }
 
 fn add_surface(sum: Surface, part: Surface, share: f32) -> Surface {
@@ -310,7 +317,7 @@ fn blended_surface(
     grown: f32,
 ) -> Surface {
     let place = in.place_in_field;
-    let shares = look_shares(place / ground.map_m);
+    let shares = look_shares(place / ground.map_m, in.beyond_m);
     var sum = Surface(vec3f(0.0), 0.0, 0.0);
     if shares[LOOK_GRASS] > 0.004 {
         let near = floor_of_grass(place, base, pixel_m);
@@ -367,7 +374,9 @@ fn lit_ground(in: GroundPoint) -> vec4f {
     let uv = in.place_in_field / ground.map_m;
     let map_rgb = textureSampleLevel(base_colour, base_sampler, uv, 0.0).rgb;
     // Mirror images of the field would show from a hill: the land turns to its mean colour.
-    let base = mix(map_rgb, ground.mean_rgb, smoothstep(5.0, 50.0, in.beyond_m));
+    // Sharp figures, such as paths, would show sooner.
+    let strays = select(vec2f(5.0, 50.0), vec2f(0.0, LAND_BLENDS_M), field.taste_count > 0u);
+    let base = mix(map_rgb, ground.mean_rgb, smoothstep(strays.x, strays.y, in.beyond_m));
 
     // As fewer blades are drawn, the ground takes over their look.
     let full = frame.blade_full_m;

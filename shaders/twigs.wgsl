@@ -51,7 +51,7 @@ fn twig_vertex(
     let ground = ground_rgb(drawn) * field.species[drawn.plant.species].tint_rgb;
     let wood = mix(ground, dot(ground, vec3f(0.3, 0.6, 0.1)) * vec3f(1.1, 0.95, 0.8), 0.6);
     let surface = wood * (0.6 + 0.7 * shade_byte(drawn.plant, 1u));
-    let light = light_between(plant_look.cover * (1.0 - drawn.thrives), 0.9, position);
+    let light = light_between(local_cover(drawn), 0.9, position);
     let radiance = through_air(dull_radiance(surface, normal, light), position);
     let clip = frame.clip_from_eye * vec4f(position, 1.0);
     let on_bark = vec2f(around * 5.0, point.along * 14.0 + f32(drawn.plant.shade & 255u));

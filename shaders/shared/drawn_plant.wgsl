@@ -41,7 +41,7 @@ struct PlantLook {
 @group(3) @binding(3) var base_colour: texture_2d<f32>;
 @group(3) @binding(4) var base_sampler: sampler;
 // Plants bucket by bucket: tile, rank, kind and how it thrives, and halves: share of its size and
-// factor of its width. And how many each bucket has.
+// one over its width's factor. And how many each bucket has.
 @group(3) @binding(5) var<storage, read> sorted: array<vec4u>;
 @group(3) @binding(6) var<storage, read> totals: array<u32, BUCKETS>;
 
@@ -72,9 +72,9 @@ fn drawn_plant(vertex: u32, instance: u32) -> DrawnPlant {
     let rank = entry.y;
     // First one blade of every plant, then their companions.
     let place = rank % field.plants_per_tile;
-    let choice = Choice(entry.z >> 20u, entry.z & 0xfffffu);
+    let choice = KindChoice(entry.z >> 20u, entry.z & 0xfffffu);
     let plant = plant_of(tile.tile, seed_at(tile.tile, place), choice);
-    let sizes = unpack2x16float(entry.w);
+    let sizes = unpack2x16unorm(entry.w);
     return DrawnPlant(
         tile,
         plant,
@@ -82,7 +82,7 @@ fn drawn_plant(vertex: u32, instance: u32) -> DrawnPlant {
         rank / field.plants_per_tile,
         f32(choice.thrives) * (1.0 / 65536.0),
         sizes.x,
-        sizes.y,
+        1.0 / max(sizes.y, 1e-4),
         tile.anchor_from_eye + plant.root,
         plant_look.buckets[bucket],
     );
@@ -135,6 +135,12 @@ fn plant_rgb(drawn: DrawnPlant) -> vec3f {
     let rgb = ground_rgb(drawn) * field.species[plant.species].tint_rgb * lightness;
     let grey = dot(rgb, vec3f(0.3, 0.6, 0.1));
     return mix(rgb, grey * vec3f(1.55, 1.2, 0.5), dry * 0.6);
+}
+
+// Share of the sky that neighbours hide from what lies on the ground: little where it thrives, as
+// much as elsewhere where it strayed into the grass.
+fn local_cover(drawn: DrawnPlant) -> f32 {
+    return mix(plant_look.cover, min(plant_look.cover, 0.15), smoothstep(0.05, 0.4, drawn.thrives));
 }
 
 // How deep in the grass a point of the plant lies, 0 at the tops; `height_m` over the ground. Where

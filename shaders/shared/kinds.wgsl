@@ -8,7 +8,7 @@
 @group(0) @binding(4) var base_texels: texture_2d<u32>;
 
 // What grows at a place. On bare ground `kind` is `field.species_count` or more.
-struct Choice {
+struct KindChoice {
     kind: u32,
     // s′ of eq. 18 in units of 2⁻¹⁶.
     thrives: u32,
@@ -78,10 +78,10 @@ fn score_log(taste: TasteUniform, hsv: vec3u) -> i32 {
 }
 
 // What grows at a place of the map, given a random word.
-fn choose_kind(place: vec2u, word: u32) -> Choice {
+fn choose_kind(place: vec2u, word: u32) -> KindChoice {
     let hsv = hsv_of(map_colour(place));
     let none = i32(0x80000000u);
-    var first = Choice(MAX_TASTES, 0u);
+    var first = KindChoice(MAX_TASTES, 0u);
     var second = MAX_TASTES;
     var first_log = none;
     var second_log = none;
@@ -108,9 +108,9 @@ fn choose_kind(place: vec2u, word: u32) -> Choice {
         chance = (ratio << 16u) / (32768u + ratio);
     }
     if (word >> 16u) < chance {
-        return Choice(second, chance);
+        return KindChoice(second, chance);
     }
-    return Choice(first.kind, 65536u - chance);
+    return KindChoice(first.kind, 65536u - chance);
 }
 
 // Place on the map of a place in a cell, both in units of 2⁻²⁴ cell.

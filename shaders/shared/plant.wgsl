@@ -47,13 +47,13 @@ fn draw_between(range: vec2f, random: ptr<function, u32>) -> f32 {
 }
 
 // A kind by the shares alone.
-fn by_share(word: u32) -> Choice {
+fn by_share(word: u32) -> KindChoice {
     for (var kind = 0u; kind < field.species_count; kind++) {
         if word < field.species[kind].share_below {
-            return Choice(kind, 65536u);
+            return KindChoice(kind, 65536u);
         }
     }
-    return Choice(field.species_count - 1u, 65536u);
+    return KindChoice(field.species_count - 1u, 65536u);
 }
 
 // A seed: where on its triangle a plant grows, before its kind is known.
@@ -104,7 +104,7 @@ fn seed_at(tile: TileRecord, place: u32) -> Seed {
 }
 
 // What grows of a seed.
-fn choice_of(tile: TileRecord, seed: Seed) -> Choice {
+fn choice_of(tile: TileRecord, seed: Seed) -> KindChoice {
     if field.taste_count == 0u {
         return by_share(seed.word);
     }
@@ -112,7 +112,7 @@ fn choice_of(tile: TileRecord, seed: Seed) -> Choice {
 }
 
 // The plant of a seed, of a kind that is known.
-fn plant_of(tile: TileRecord, seed: Seed, choice: Choice) -> Plant {
+fn plant_of(tile: TileRecord, seed: Seed, choice: KindChoice) -> Plant {
     var plant: Plant;
     let in_anchor = vec2f(seed.cell % vec2u(ANCHOR_CELLS));
     // At most 2²⁴ steps: exact.
