@@ -70,7 +70,7 @@ fn on_head(drawn: DrawnPlant, corner: u32) -> FlowerPoint {
     let uv = reach * vec2f(cos_turns(sector), sin_turns(sector));
 
     let size = 0.8 + 0.4 * shade_byte(drawn.plant, 2u);
-    let half_m = 0.5 * form.head_m * size * drawn.grown * drawn.widen;
+    let half_m = 0.5 * form.head_m * size * drawn.grown * sqrt(drawn.widen);
     let widened = max(LEAST_HALF_PX * length(centre) * frame.pixel_rad / max(half_m, 1e-6), 1.0);
     let shift = (first * uv.x + second * uv.y + normal * (0.22 * reach)) * (half_m * widened);
     let position = centre + shift;

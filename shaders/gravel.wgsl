@@ -35,7 +35,7 @@ fn stone_vertex(
     let y = stone_corner(plant.shade, 2u + ((face >> 1u) & 1u));
     let z = stone_corner(plant.shade, 4u + (face >> 2u));
     let half_m = vec3f(0.5 * plant.height_m, 0.5 * plant.width_m, 0.4 * plant.height_m)
-        * (drawn.grown * drawn.widen);
+        * (drawn.grown * sqrt(drawn.widen));
     let outward = cross((y - x) * half_m, (z - x) * half_m);
     let own_normal = normalize(select(outward, -outward, dot(outward, x + y + z) < 0.0));
     var local = x;
