@@ -247,8 +247,8 @@ fn gravel_floor(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
     let stones = mix(0.5, value_noise(place * 45.0), detail_weight(0.022, pixel_m));
     let grains = mix(0.5, value_noise(place * 140.0 + 9.0), detail_weight(0.008, pixel_m));
     let lumps = mix(0.5, cloudy_noise(place * 5.0 + 2.0), detail_weight(0.2, pixel_m));
-    let tone = 0.45 + 0.55 * stones + 0.25 * grains + 0.25 * lumps;
-    return Surface(base * tone, 0.008 * stones, 0.86);
+    let tone = 0.3 + 0.75 * stones + 0.35 * grains + 0.2 * lumps;
+    return Surface(base * tone, 0.012 * stones, 0.72);
 }
 
 // Dead leaves over each other.
