@@ -70,6 +70,15 @@ pub struct Seeds {
     pub kinds: Option<Kinds>,
 }
 
+/// Where a seed lies: shares of its triangle's legs, as words.
+struct Sown {
+    root: [u32; 2],
+    /// Where its kind is looked up.
+    middle: [u32; 2],
+    /// What chooses its kind.
+    word: u32,
+}
+
 impl Seeds {
     /// `table` says where each kind draws its stiffness and lean from.
     pub fn new(grass: &Grass, philox: PhiloxRounds, table: &BladeTable, grid: &FieldGrid) -> Self {
@@ -131,25 +140,14 @@ impl Seeds {
             return None;
         }
         let words = philox2x32([triangle, index], self.key, self.rounds);
-        let mut random = Pcg::from_words(words);
-        let own_word = random.next_word();
-        let (legs, middle, word) = if self.cluster > 1 {
-            let cluster = index / self.cluster;
-            let stratum = stratum(triangle, cluster, self.key, self.rounds);
-            let of_cluster = philox2x32([triangle, CLUSTER_WORD + cluster], self.key, self.rounds);
-            let word = Pcg::from_words(of_cluster).next_word();
-            (stratum.within(words), stratum.within(of_cluster), word)
-        } else {
-            let legs = folded(words);
-            (legs, legs, own_word)
-        };
-        let in_cell = in_cell(cell, half, legs);
+        let sown = self.sown(triangle, index, words);
+        let in_cell = in_cell(cell, half, sown.root);
         let choice = match &self.kinds {
-            None => self.by_share(word),
+            None => self.by_share(sown.word),
             Some(kinds) => {
                 let origin = kinds.anchor_on_map(grid, anchor);
-                let middle = self::in_cell(cell, half, middle);
-                kinds.choose(kinds.place_on_map(origin, cell, middle), word)
+                let middle = self::in_cell(cell, half, sown.middle);
+                kinds.choose(kinds.place_on_map(origin, cell, middle), sown.word)
             }
         };
         let species = choice.kind?;
@@ -159,7 +157,27 @@ impl Seeds {
             ((cell[a] % ANCHOR_CELLS) as f32 + share) * grid.cell_m
         });
         let root_in_anchor = [x, ground_in_anchor(ground, anchor, x, z), z];
-        Some(self.grow(random, species, choice.thrives, root_in_anchor))
+        Some(self.grow(words, species, choice.thrives, root_in_anchor))
+    }
+
+    /// Where a seed lies, alone or in its cluster.
+    fn sown(&self, triangle: u32, index: u32, words: [u32; 2]) -> Sown {
+        if self.cluster <= 1 {
+            let root = folded(words);
+            return Sown {
+                root,
+                middle: root,
+                word: Pcg::from_words(words).next_word(),
+            };
+        }
+        let cluster = index / self.cluster;
+        let stratum = stratum(triangle, cluster, self.key, self.rounds);
+        let of_cluster = philox2x32([triangle, CLUSTER_WORD + cluster], self.key, self.rounds);
+        Sown {
+            root: stratum.within(words),
+            middle: stratum.within(of_cluster),
+            word: Pcg::from_words(of_cluster).next_word(),
+        }
     }
 
     /// A kind by the shares alone.
@@ -172,7 +190,10 @@ impl Seeds {
     }
 
     /// The plant of a kind that thrives by so many 2⁻¹⁶ parts.
-    fn grow(&self, mut random: Pcg, species: u32, thrives: u32, root_in_anchor: [f32; 3]) -> Plant {
+    fn grow(&self, words: [u32; 2], species: u32, thrives: u32, root_in_anchor: [f32; 3]) -> Plant {
+        let mut random = Pcg::from_words(words);
+        // The word that chooses the kind of a seed that lies alone.
+        random.next_word();
         let kind = &self.species[species as usize];
         // Eq. 18: on its own ground a plant is as large and stiff as its seed says.
         let vigour = 1.0 - kind.dwindle * (1.0 - thrives as f32 * (1.0 / 65_536.0));

@@ -56,11 +56,10 @@ use crate::gpu::wgsl::WgslFile;
 use crate::wgsl_file;
 use blade_tiles::WIDEN_POWER;
 use blades::{TUFT_RADIUS_M, TUFT_TURNS};
+use ground_look::{LOOK_BARE, LOOK_GRASS, LOOK_GRAVEL, LOOK_LITTER, TASTE_ROWS};
 use plant_form::{BUCKET_VERTICES, BUCKETS, DETAILS, FORM_BLADE, FORM_COUNT};
 use sort_plants::{COUNT_BY_DISTANCE, COUNT_BY_PROJECTED_AREA, LEAST_GROWN, NO_BUCKET};
-use terrain::{
-    CHUNK_SAMPLES, LAND_RINGS_M, LOOK_BARE, LOOK_GRASS, LOOK_GRAVEL, LOOK_LITTER, TASTE_ROWS,
-};
+use terrain::{CHUNK_SAMPLES, LAND_RINGS_M};
 
 /// Format in which light is added up before it is shown.
 const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;

@@ -11,16 +11,14 @@ use wgpu::{BufferUsages, ShaderStages};
 
 use crate::base::Vec3;
 use crate::field::Field;
-use crate::field::kinds::MAX_TASTES;
 use crate::gpu::{Buffer, FieldBuffers, Gpu, GpuError};
 use crate::gpu_struct;
-use crate::scene::Form;
 use crate::terrain::HeightGrid;
 use crate::terrain::bintree::MeshChange;
 
 use super::camera::View;
 use super::error::RenderError;
-use super::ground_look::GroundTexture;
+use super::ground_look::{GroundTexture, TASTE_ROWS, looks};
 use super::ground_mesh::{GroundMesh, TerrainDetail};
 use super::pipeline::{DepthUse, Drawing, READ_STORAGE, UNIFORM, bind_group, group_layout};
 use super::plants::{BladesInput, Canopy};
@@ -58,14 +56,6 @@ gpu_struct! {
         looks: [[u32; 4]; TASTE_ROWS as usize],
     }
 }
-
-/// What the ground of a kind looks like, as the shader knows it.
-pub(super) const LOOK_GRASS: u32 = 0;
-pub(super) const LOOK_GRAVEL: u32 = 1;
-pub(super) const LOOK_LITTER: u32 = 2;
-pub(super) const LOOK_BARE: u32 = 3;
-/// Rows of four that hold a number for every kind and bare ground.
-pub(super) const TASTE_ROWS: u32 = (MAX_TASTES as u32).div_ceil(4);
 
 gpu_struct! {
     pub(super) struct Chunk {
@@ -404,19 +394,6 @@ fn ground_uniform(
         pad_d: [0; 2],
         looks: [[0; 4]; TASTE_ROWS as usize],
     }
-}
-
-/// The looks of a field's kinds and bare grounds.
-fn looks(field: &Field) -> [[u32; 4]; TASTE_ROWS as usize] {
-    let mut looks = [[LOOK_BARE; 4]; TASTE_ROWS as usize];
-    for (n, kind) in field.seeds.species.iter().enumerate() {
-        looks[n / 4][n % 4] = match kind.form {
-            Form::Blade | Form::Flower { .. } => LOOK_GRASS,
-            Form::Leaf | Form::Twig => LOOK_LITTER,
-            Form::Gravel => LOOK_GRAVEL,
-        };
-    }
-    looks
 }
 
 #[cfg(test)]

@@ -16,9 +16,9 @@ use super::{SIZE, Stage, hold};
 const KINDS: &str =
     "(terrain: (ground: Rolling(size_m: (7, 6), amplitude_m: 0.3, wavelength_m: 4)),
     grass: (density_per_m2: 90, cluster: 2, species: [
-        (name: \"a\", likes: (hsv: (88, 0.5, 0.45))),
-        (name: \"b\", form: Leaf, likes: (hsv: (75, 0.43, 0.5))),
-        (name: \"c\", form: Gravel, response: Stays, likes: (hsv: (55, 0.36, 0.54)))]))";
+        (name: \"a\", likes: Some((hsv: (88, 0.5, 0.45)))),
+        (name: \"b\", form: Leaf, likes: Some((hsv: (75, 0.43, 0.5)))),
+        (name: \"c\", form: Gravel, response: Stays, likes: Some((hsv: (55, 0.36, 0.54))))]))";
 /// From where the whole field is in the picture, and nothing is near the end of sight.
 const EYE_M: [f64; 3] = [0.0, 11.0, 9.0];
 /// Plants smaller than this share of their size are left out.

@@ -124,7 +124,7 @@ fn a_kind_grows_where_its_colour_is() {
 fn the_choice_is_in_proportion_to_the_scores() {
     let colour = [100, 120, 60];
     let map = map([colour; 8]);
-    let likes = [liking([70.0, 0.3, 0.4]), liking([110.0, 0.6, 0.6])];
+    let likes = [liking([110.0, 0.6, 0.6]), liking([70.0, 0.3, 0.4])];
     let kinds = kinds(&likes, &[], map);
     let scores = likes
         .clone()
