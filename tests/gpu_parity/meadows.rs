@@ -124,7 +124,7 @@ pub fn coloured_field(solver: &Solver, cluster: u32) -> Result<Field, Failed> {
         cluster,
         species: vec![
             kind("green", liking([110.0, 0.6, 0.4], 3.0, 0.7), 1.0),
-            kind("red", liking([350.0, 0.5, 0.6], 2.0, 0.0), 0.6),
+            kind("red", liking([350.0, 0.5, 0.6], 2.0, 0.0), 9.0),
             kind("blue", liking([230.0, 0.9, 0.2], 5.5, 0.3), 2.0),
         ],
         bare: vec![liking([0.0, 0.0, 0.9], 4.0, 0.0)],
