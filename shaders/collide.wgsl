@@ -59,7 +59,7 @@ fn collide(
     }
     let tile = tiles[group.y];
     let plant = plant_at(tile, place);
-    if !plant.grows {
+    if !responds(plant) {
         return;
     }
     let sweeps = sweeps_for(tile, plant.root, plant.height_m);

@@ -1,6 +1,7 @@
 // The ground: the exact triangles of the height samples, and a land around them that runs to
 // the horizon. Host: src/render/terrain.rs.
 #import "shared/frame.wgsl"
+#import "shared/kinds.wgsl"
 #import "shared/light.wgsl"
 #import "shared/noise.wgsl"
 #import "shared/shadow.wgsl"
@@ -25,6 +26,8 @@ struct Ground {
     pad_c: f32,
     eye_sample: vec2i, // its column and row
     pad_d: vec2i,
+    // What the ground of each kind and bare ground looks like, four a row: LOOK_GRASS and so on.
+    looks: array<vec4u, TASTE_ROWS>,
 }
 
 struct Chunk {
@@ -37,12 +40,11 @@ struct Chunk {
 }
 
 @group(3) @binding(0) var<uniform> ground: Ground;
-@group(3) @binding(1) var<storage, read> heights_m: array<f32>;
-@group(3) @binding(2) var<storage, read> chunks: array<Chunk>;
-@group(3) @binding(3) var base_colour: texture_2d<f32>;
-@group(3) @binding(4) var base_sampler: sampler;
+@group(3) @binding(1) var<storage, read> chunks: array<Chunk>;
+@group(3) @binding(2) var base_colour: texture_2d<f32>;
+@group(3) @binding(3) var base_sampler: sampler;
 // Drawn height of the field's edge, sample by sample around it; see `edge_sample`.
-@group(3) @binding(5) var<storage, read> edge_heights_m: array<f32>;
+@group(3) @binding(4) var<storage, read> edge_heights_m: array<f32>;
 
 struct GroundPoint {
     @builtin(position) clip: vec4f,
@@ -240,6 +242,105 @@ fn top_of_grass(place: vec2f, base: vec3f, pixel_m: f32, long_pixel_m: f32) -> S
     return Surface(mix(rgb, straw, 0.2), 0.05 * clumps + 0.02 * tufts, GRASS_TOP_OPEN);
 }
 
+// Stones side by side.
+fn gravel_floor(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
+    let stones = mix(0.5, value_noise(place * 45.0), detail_weight(0.022, pixel_m));
+    let grains = mix(0.5, value_noise(place * 140.0 + 9.0), detail_weight(0.008, pixel_m));
+    let lumps = mix(0.5, cloudy_noise(place * 5.0 + 2.0), detail_weight(0.2, pixel_m));
+    let tone = 0.3 + 0.75 * stones + 0.35 * grains + 0.2 * lumps;
+    return Surface(base * tone, 0.012 * stones, 0.72);
+}
+
+// Dead leaves over each other.
+fn litter_floor(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
+    let leaves = mix(0.5, value_noise(place * vec2f(19.0, 24.0)), detail_weight(0.05, pixel_m));
+    let edges = mix(0.5, value_noise(place * 60.0 + 3.0), detail_weight(0.016, pixel_m));
+    let pale = mix(0.5, cloudy_noise(place * 7.0 + 6.0), detail_weight(0.14, pixel_m));
+    let rgb = base * mix(vec3f(0.85, 0.85, 0.85), vec3f(1.25, 1.1, 0.9), pale);
+    return Surface(rgb * (0.45 + 0.6 * leaves + 0.3 * edges), 0.012 * leaves, 0.72);
+}
+
+fn bare_floor(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
+    let lumps = mix(0.5, cloudy_noise(place * 9.0), detail_weight(0.11, pixel_m));
+    let grains = mix(0.5, value_noise(place * 130.0), detail_weight(0.008, pixel_m));
+    return Surface(base * (0.6 + 0.6 * lumps + 0.2 * grains), 0.012 * lumps, 0.95);
+}
+
+// Distance from the field's edge within which kinds by colour end.
+const LAND_BLENDS_M = 8.0;
+
+// Shares of the looks at a place: eq. 17's weights, the scores of the kinds and bare grounds.
+fn look_shares(uv: vec2f, beyond_m: f32) -> vec4f {
+    var shares = vec4f(0.0);
+    if field.taste_count == 0u || beyond_m > LAND_BLENDS_M {
+        shares[LOOK_GRASS] = 1.0;
+        return shares;
+    }
+    // The map is mirrored beyond its edges.
+    let mirrored = 1.0 - abs(1.0 - (uv - 2.0 * floor(0.5 * uv)));
+    let hsv = hsv_of(map_colour(vec2u(mirrored * vec2f(field.map_texels) * 65536.0)));
+    var logs: array<f32, MAX_TASTES>;
+    var best = -1e9;
+    for (var i = 0u; i < field.taste_count; i++) {
+        let own = score_log(field.tastes[i], hsv);
+        logs[i] = -1e9;
+        if own >= field.tastes[i].threshold_log {
+            logs[i] = f32(own + field.tastes[i].share_log) / 4096.0;
+        }
+        best = max(best, logs[i]);
+    }
+    for (var i = 0u; i < field.taste_count; i++) {
+        shares[ground.looks[i >> 2u][i & 3u]] += exp2(max(logs[i] - best, -60.0));
+    }
+    // The land around the field is grass.
+    let land = smoothstep(0.0, LAND_BLENDS_M, beyond_m);
+    shares *= (1.0 - land) / dot(shares, vec4f(1.0));
+    shares[LOOK_GRASS] += land;
+    return shares;
+}
+
+fn add_surface(sum: Surface, part: Surface, share: f32) -> Surface {
+    return Surface(
+        sum.albedo + part.albedo * (part.open * share),
+        sum.relief_m + part.relief_m * share,
+        sum.open + part.open * share,
+    );
+}
+
+// The ground as it looks from here; `grown` is how far it has taken over the grass's look. The
+// albedo has the openness in it.
+fn blended_surface(
+    in: GroundPoint,
+    base: vec3f,
+    pixel_m: f32,
+    long_pixel_m: f32,
+    grown: f32,
+) -> Surface {
+    let place = in.place_in_field;
+    let shares = look_shares(place / ground.map_m, in.beyond_m);
+    var sum = Surface(vec3f(0.0), 0.0, 0.0);
+    if shares[LOOK_GRASS] > 0.004 {
+        let near = floor_of_grass(place, base, pixel_m);
+        let far = top_of_grass(place, base, pixel_m, long_pixel_m);
+        let grass = Surface(
+            mix(near.albedo, far.albedo, grown),
+            mix(near.relief_m, far.relief_m, grown),
+            mix(near.open, far.open, grown),
+        );
+        sum = add_surface(sum, grass, shares[LOOK_GRASS]);
+    }
+    if shares[LOOK_GRAVEL] > 0.004 {
+        sum = add_surface(sum, gravel_floor(place, base, pixel_m), shares[LOOK_GRAVEL]);
+    }
+    if shares[LOOK_LITTER] > 0.004 {
+        sum = add_surface(sum, litter_floor(place, base, pixel_m), shares[LOOK_LITTER]);
+    }
+    if shares[LOOK_BARE] > 0.004 {
+        sum = add_surface(sum, bare_floor(place, base, pixel_m), shares[LOOK_BARE]);
+    }
+    return sum;
+}
+
 // Bends a normal by a small height that varies over the screen (Mikkelsen 2010).
 fn bumped(normal: vec3f, position: vec3f, relief_m: f32) -> vec3f {
     let right = dpdx(position);
@@ -273,22 +374,20 @@ fn lit_ground(in: GroundPoint) -> vec4f {
     let uv = in.place_in_field / ground.map_m;
     let map_rgb = textureSampleLevel(base_colour, base_sampler, uv, 0.0).rgb;
     // Mirror images of the field would show from a hill: the land turns to its mean colour.
-    let base = mix(map_rgb, ground.mean_rgb, smoothstep(5.0, 50.0, in.beyond_m));
+    // Sharp figures, such as paths, would show sooner.
+    let strays = select(vec2f(5.0, 50.0), vec2f(0.0, LAND_BLENDS_M), field.taste_count > 0u);
+    let base = mix(map_rgb, ground.mean_rgb, smoothstep(strays.x, strays.y, in.beyond_m));
 
-    let near = floor_of_grass(in.place_in_field, base, pixel_m);
-    let far = top_of_grass(in.place_in_field, base, pixel_m, long_pixel_m);
     // As fewer blades are drawn, the ground takes over their look.
     let full = frame.blade_full_m;
     let reach = frame.blade_reach_m;
     var grown = 0.8 * smoothstep(full, 4.0 * full, distance);
     grown = max(grown, smoothstep(0.5 * reach, 0.95 * reach, distance));
     grown = max(grown, smoothstep(0.0, 1.5, in.beyond_m)) * select(0.0, 1.0, ground.canopy_m > 0.0);
-    let albedo = mix(near.albedo, far.albedo, grown);
-    let open = mix(near.open, far.open, grown);
-    let relief = mix(near.relief_m, far.relief_m, grown);
+    let surface = blended_surface(in, base, pixel_m, long_pixel_m, grown);
 
     let flat_normal = normalize(in.normal);
-    let bumpy = bumped(flat_normal, in.position_from_eye, relief);
+    let bumpy = bumped(flat_normal, in.position_from_eye, surface.relief_m);
     let normal = normalize(mix(flat_normal, bumpy, detail_weight(0.06, pixel_m)));
     let facing = max(dot(normal, frame.sun_direction), 0.0);
     let reaches = sun_reaches(in.position_from_eye, flat_normal);
@@ -296,6 +395,6 @@ fn lit_ground(in: GroundPoint) -> vec4f {
     let against = pow(max(-dot(to_eye, frame.sun_direction), 0.0), 3.0);
     let through = vec3f(0.9, 1.0, 0.3) * (0.5 * grown * against);
     let sun = frame.sun_rgb * reaches * (vec3f(facing) + through);
-    let light = albedo * open * (sun + ambient_light(normal));
+    let light = surface.albedo * (sun + ambient_light(normal));
     return vec4f(through_air(light, in.position_from_eye), 1.0);
 }

@@ -100,6 +100,20 @@ fn numbers_out_of_range() {
         "(grass: (species: [(height_m: (0.4, 0.2))]))" => "1:31" "grass.species[0].height_m": "(0.4, 0.2)";
         "(grass: (species: [(share: 0)]))" => "1:19" "grass.species": "positive share";
         "(grass: (species: [(name: \"\")]))" => "1:27" "grass.species[0].name": "1 to 64";
+        "(grass: (species: [(likes: (hsv: (361, 0, 0)))]))" => "1:35" "grass.species[0].likes.hsv[0]": "is 361", "0 to 360 degrees";
+        "(grass: (species: [(likes: (hsv: (60, 1.5, 0)))]))" => "1:39" "grass.species[0].likes.hsv[1]": "is 1.5", "0 to 1";
+        "(grass: (species: [(likes: (weights: (0, 0, 0)))]))" => "1:38" "grass.species[0].likes.weights": "all 0";
+        "(grass: (species: [(likes: (weights: (9, 0, 0)))]))" => "1:39" "grass.species[0].likes.weights[0]": "0 to 8";
+        "(grass: (species: [(likes: (exponent: 0))]))" => "1:39" "grass.species[0].likes.exponent": "0.25 to 16";
+        "(grass: (species: [(likes: (dwindle: 2))]))" => "1:38" "grass.species[0].likes.dwindle": "0 to 1";
+        "(grass: (species: [(likes: ()), (name: \"b\")]))" => "1:33" "grass.species[1].likes": "to all or to none";
+        "(grass: (species: [(likes: (), share: 0), (likes: ())]))" => "1:39" "grass.species[0].share": "never chosen";
+        "(grass: (cluster: 0))" => "1:19" "grass.cluster": "1 to 16 seeds";
+        "(grass: (bare: [()]))" => "1:16" "grass.bare": "no species has `likes`";
+        "(grass: (species: [(likes: ())], bare: [(), (), (), (), ()]))" => "1:40" "grass.bare": "at most 4";
+        "(grass: (species: [(form: Flower(head_m: 0, petal_rgb: (1, 1, 1), centre_rgb: (1, 1, 0)))]))" => "1:42" "grass.species[0].form.head_m": "0.0001 to 1 m";
+        "(grass: (species: [(form: Flower(head_m: 0.1, petals: 2, petal_rgb: (1, 1, 1), centre_rgb: (1, 1, 0)))]))" => "1:55" "grass.species[0].form.petals": "3 to 64";
+        "(terrain: (base_map: \"none.png\"))" => "1:22" "terrain.base_map": "none.png";
         "(terrain: (lush_rgb: (0, 2, 0)))" => "1:26" "terrain.lush_rgb[1]": "is 2", "0 to 1";
         "(terrain: (ground: Flat(size_m: (8, 0))))" => "1:37" "terrain.ground.size_m[1]": "is 0";
     }

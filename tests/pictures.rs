@@ -15,6 +15,9 @@ use sward::scene::Scene;
 use sward::sim::{Grass, Meadow, tick};
 use sward::terrain::ColourMap;
 
+#[path = "pictures/counted.rs"]
+mod counted;
+
 type Check = fn(&Gpu) -> Result<(), Failed>;
 
 const CHECKS: &[(&str, Check)] = &[
@@ -32,6 +35,14 @@ const CHECKS: &[(&str, Check)] = &[
     (
         "a_coarser_ground_looks_like_the_full_one",
         a_coarser_ground_looks_like_the_full_one,
+    ),
+    (
+        "plants_are_sorted_by_form",
+        counted::plants_are_sorted_by_form,
+    ),
+    (
+        "density_follows_the_equations",
+        counted::density_follows_the_equations,
     ),
     (
         "what_cannot_be_drawn_is_refused",
@@ -63,7 +74,7 @@ impl Stage {
         let mut renderer = Renderer::new(gpu, PictureTarget::FORMAT, SIZE)?;
         let terrain = &meadow.scene.terrain;
         let look = GroundLook {
-            map: &ColourMap::of(terrain, &meadow.field.ground),
+            map: &ColourMap::of_patches(terrain, &meadow.field.ground),
             soil_rgb: terrain.soil_rgb,
         };
         renderer.set_scene(gpu, &meadow.field, &look, meadow.bodies.shapes())?;
@@ -93,6 +104,7 @@ impl Stage {
                     full_m: 12.0,
                     reach_m: 40.0,
                     tuft: 1,
+                    ..BladeDetail::default()
                 },
             }),
             marks: &[],

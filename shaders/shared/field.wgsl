@@ -11,6 +11,20 @@ struct SpeciesUniform {
     flexibility: f32,
     // A plant is of the first kind whose bound lies above its random word.
     share_below: u32,
+    // Part of its height and stiffness that a plant lacks where the ground is another kind's.
+    dwindle: f32,
+    // 1 if bodies push it aside.
+    bends: u32,
+    spare: u32,
+}
+
+// A liking for a colour of the ground; units in src/field/kinds.rs.
+struct TasteUniform {
+    hsv: vec3u,
+    exponent: u32,
+    weights: vec3u,
+    share_log: i32,
+    threshold_log: i32,
     spare_a: u32,
     spare_b: vec2u,
 }
@@ -46,9 +60,19 @@ struct FieldUniform {
     // Fraction of the stiffness axis of the blade table at which its entries are densest, below 0
     // where both axes are even.
     stiffness_knee: f32,
+    // Texels of the base map, texels along a seeding cell in units of 2⁻¹⁸, and how many kinds and
+    // bare grounds are compared with it; 0 where kinds grow everywhere.
+    map_texels: vec2u,
+    map_step: u32,
+    taste_count: u32,
+    // Seeds of a cluster; 1 for seeds that lie alone.
+    cluster: u32,
+    spare_a: u32,
+    spare_b: vec2u,
     // Share of the wind's push that each segment takes, four a row.
     wind_shares: array<vec4f, 4>,
     species: array<SpeciesUniform, MAX_SPECIES>,
+    tastes: array<TasteUniform, MAX_TASTES>,
 }
 
 @group(0) @binding(0) var<uniform> field: FieldUniform;

@@ -18,5 +18,6 @@ struct TileRecord {
     // The tile's run of contacts.
     first_contact: u32,
     end_contact: u32,
-    spare: vec2u,
+    // Place of the anchor's origin on the base map, in units of 2⁻¹⁶ texel.
+    anchor_on_map: vec2u,
 }

@@ -1,5 +1,6 @@
 //! Floats, small maths, random numbers, statistics: nothing that knows of grass.
 
+pub mod fixed;
 pub mod hash;
 pub mod philox;
 pub mod pose;

@@ -2,8 +2,11 @@
 
 pub mod blade_shape;
 pub mod blade_table;
+pub mod clusters;
+pub mod count;
 pub mod grid;
 pub mod in_view;
+pub mod kinds;
 pub mod octree;
 pub mod plant;
 pub mod pose;
@@ -13,6 +16,7 @@ pub mod wind;
 
 pub use blade_table::BladeTable;
 pub use grid::{Anchor, FieldGrid, TileId};
+pub use kinds::Kinds;
 pub use octree::{Bounds, Octree};
 pub use plant::{Plant, Seeds};
 pub use pose::{MAX_NODES, MAX_SEGMENTS, Nodes, wind_pose};
@@ -23,8 +27,8 @@ pub use wind::WindNow;
 use std::sync::Arc;
 
 use crate::scene::{Grass, Solver};
-use crate::terrain::HeightGrid;
 use crate::terrain::bintree::Bintree;
+use crate::terrain::{ColourMap, HeightGrid};
 
 /// Everything about a meadow that does not change while it is simulated.
 #[derive(Clone, Debug)]
@@ -46,13 +50,43 @@ pub enum FieldError {
     Grid(#[from] grid::GridError),
     #[error(transparent)]
     Table(#[from] blade_table::TableError),
+    #[error(
+        "the kinds of plants have `likes`, so they need a base map: lay the field out with `on_map`"
+    )]
+    NoMap,
 }
 
 impl Field {
+    /// A field whose kinds of plants grow everywhere alike.
+    ///
+    /// # Errors
+    /// A ground that cannot be divided, blades without a shape, kinds that look at a base map.
     pub fn new(ground: HeightGrid, grass: &Grass, solver: &Solver) -> Result<Self, FieldError> {
+        if grass.grows_by_colour() {
+            return Err(FieldError::NoMap);
+        }
+        Self::laid_out(ground, grass, solver)
+    }
+
+    /// A field whose kinds of plants grow where the base map has the colours they like.
+    ///
+    /// # Errors
+    /// A ground that cannot be divided, blades without a shape.
+    pub fn on_map(
+        ground: HeightGrid,
+        map: Arc<ColourMap>,
+        grass: &Grass,
+        solver: &Solver,
+    ) -> Result<Self, FieldError> {
+        let mut field = Self::laid_out(ground, grass, solver)?;
+        field.seeds.kinds = Kinds::new(grass, &field.grid, map);
+        Ok(field)
+    }
+
+    fn laid_out(ground: HeightGrid, grass: &Grass, solver: &Solver) -> Result<Self, FieldError> {
         let grid = FieldGrid::new(&ground, grass, solver)?;
         let table = BladeTable::new(grass, solver.segments, solver.root, solver.blade_table)?;
-        let seeds = Seeds::new(grass, solver.philox, &table);
+        let seeds = Seeds::new(grass, solver.philox, &table, &grid);
         let octree = Octree::new(&grid, &ground);
         let reach_m = grass
             .species
@@ -74,6 +108,14 @@ impl Field {
     pub fn plant(&self, anchor: &Anchor, tile: TileId, place: u32) -> Option<Plant> {
         self.seeds
             .plant(&self.grid, &self.ground, anchor, tile, place)
+    }
+
+    /// The same, if it is of a kind that bodies push aside.
+    pub fn responding_plant(&self, anchor: &Anchor, tile: TileId, place: u32) -> Option<Plant> {
+        let plant = self.plant(anchor, tile, place)?;
+        self.seeds.species[plant.species as usize]
+            .bends
+            .then_some(plant)
     }
 
     /// Whether anything grows here at all.

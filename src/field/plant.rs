@@ -1,7 +1,7 @@
 //! A plant is its seed: everything about it follows from (triangle id, plant index).
 //!
 //! P15 section 2.2 with eq. 23-25: two words from Philox-2x32 place the root on the seeding
-//! triangle, a small generator gives the rest. Deviations: the hash takes the triangle's integer
+//! triangle, alone or in a cluster; a small generator gives the rest. Deviations: the hash takes the triangle's integer
 //! id instead of float coordinates (exact on every machine), the reflection of eq. 23-24 is done on
 //! the words (exact), and a plant count with a fraction is rounded by a hash of the triangle, not
 //! cut off (the mean stays right). WGSL twin: `shaders/shared/plant.wgsl`; words agree bit for
@@ -9,11 +9,13 @@
 
 use crate::base::philox::{Pcg, philox2x32, unit};
 use crate::base::trig::{cos_turns, sin_turns};
-use crate::scene::{Grass, PhiloxRounds, Species};
+use crate::scene::{Form, Grass, PhiloxRounds, Response, Species};
 use crate::terrain::HeightGrid;
 
 use super::blade_table::{BladeTable, SpeciesRange};
+use super::clusters::{CLUSTER_WORD, folded, stratum};
 use super::grid::{ANCHOR_CELLS, Anchor, FieldGrid, SeedPlace, TileId, ground_in_anchor};
+use super::kinds::{Choice, Kinds};
 
 /// Most kinds of plants in one meadow.
 pub const MAX_SPECIES: usize = 8;
@@ -49,6 +51,11 @@ pub struct SpeciesNumbers {
     pub lean: [f32; 2],
     pub flexibility: f32,
     pub tint_rgb: [f32; 3],
+    /// Part of its height and stiffness that a plant lacks where the ground is another kind's.
+    pub dwindle: f32,
+    /// Whether bodies push it aside.
+    pub bends: bool,
+    pub form: Form,
 }
 
 /// How seeds become plants in one meadow.
@@ -56,12 +63,25 @@ pub struct SpeciesNumbers {
 pub struct Seeds {
     pub key: u32,
     pub rounds: u32,
+    /// Seeds of a cluster; 1 for seeds that lie alone.
+    pub cluster: u32,
     pub species: Vec<SpeciesNumbers>,
+    /// Where each kind grows; `None` for everywhere, by the shares alone.
+    pub kinds: Option<Kinds>,
+}
+
+/// Where a seed lies: shares of its triangle's legs, as words.
+struct Sown {
+    root: [u32; 2],
+    /// Where its kind is looked up.
+    middle: [u32; 2],
+    /// What chooses its kind.
+    word: u32,
 }
 
 impl Seeds {
     /// `table` says where each kind draws its stiffness and lean from.
-    pub fn new(grass: &Grass, philox: PhiloxRounds, table: &BladeTable) -> Self {
+    pub fn new(grass: &Grass, philox: PhiloxRounds, table: &BladeTable, grid: &FieldGrid) -> Self {
         let total: f64 = grass.species.iter().map(|s| f64::from(s.share)).sum();
         let mut below = 0.0;
         let mut species: Vec<SpeciesNumbers> = grass
@@ -83,7 +103,14 @@ impl Seeds {
                 PhiloxRounds::Seven => 7,
                 PhiloxRounds::Paper => 3,
             },
+            // P15: a triangle of fewer plants than a cluster has none.
+            cluster: if grid.sure_plants < grass.cluster {
+                1
+            } else {
+                grass.cluster
+            },
             species,
+            kinds: None,
         }
     }
 
@@ -113,26 +140,67 @@ impl Seeds {
             return None;
         }
         let words = philox2x32([triangle, index], self.key, self.rounds);
-        let [x, z] = root_in_cell(cell, half, words);
-        let x = ((cell[0] % ANCHOR_CELLS) as f32 + x) * grid.cell_m;
-        let z = ((cell[1] % ANCHOR_CELLS) as f32 + z) * grid.cell_m;
+        let sown = self.sown(triangle, index, words);
+        let in_cell = in_cell(cell, half, sown.root);
+        let choice = match &self.kinds {
+            None => self.by_share(sown.word),
+            Some(kinds) => {
+                let origin = kinds.anchor_on_map(grid, anchor);
+                let middle = self::in_cell(cell, half, sown.middle);
+                kinds.choose(kinds.place_on_map(origin, cell, middle), sown.word)
+            }
+        };
+        let species = choice.kind?;
+        let [x, z] = [0, 1].map(|a| {
+            // At most 2²⁴ steps: exact.
+            let share = in_cell[a] as f32 * (1.0 / CELL_STEPS as f32);
+            ((cell[a] % ANCHOR_CELLS) as f32 + share) * grid.cell_m
+        });
         let root_in_anchor = [x, ground_in_anchor(ground, anchor, x, z), z];
-        Some(self.grow(words, root_in_anchor))
+        Some(self.grow(words, species, choice.thrives, root_in_anchor))
     }
 
-    fn grow(&self, words: [u32; 2], root_in_anchor: [f32; 3]) -> Plant {
+    /// Where a seed lies, alone or in its cluster.
+    fn sown(&self, triangle: u32, index: u32, words: [u32; 2]) -> Sown {
+        if self.cluster <= 1 {
+            let root = folded(words);
+            return Sown {
+                root,
+                middle: root,
+                word: Pcg::from_words(words).next_word(),
+            };
+        }
+        let cluster = index / self.cluster;
+        let stratum = stratum(triangle, cluster, self.key, self.rounds);
+        let of_cluster = philox2x32([triangle, CLUSTER_WORD + cluster], self.key, self.rounds);
+        Sown {
+            root: stratum.within(words),
+            middle: stratum.within(of_cluster),
+            word: Pcg::from_words(of_cluster).next_word(),
+        }
+    }
+
+    /// A kind by the shares alone.
+    fn by_share(&self, word: u32) -> Choice {
+        let kind = self.species.iter().position(|s| word < s.share_below);
+        Choice {
+            kind: Some(kind.unwrap_or(self.species.len() - 1) as u32),
+            thrives: 1 << 16,
+        }
+    }
+
+    /// The plant of a kind that thrives by so many 2⁻¹⁶ parts.
+    fn grow(&self, words: [u32; 2], species: u32, thrives: u32, root_in_anchor: [f32; 3]) -> Plant {
         let mut random = Pcg::from_words(words);
-        let choice = random.next_word();
-        let species = self
-            .species
-            .iter()
-            .position(|s| choice < s.share_below)
-            .unwrap_or(self.species.len() - 1);
-        let kind = &self.species[species];
+        // The word that chooses the kind of a seed that lies alone.
+        random.next_word();
+        let kind = &self.species[species as usize];
+        // Eq. 18: on its own ground a plant is as large and stiff as its seed says.
+        let vigour = 1.0 - kind.dwindle * (1.0 - thrives as f32 * (1.0 / 65_536.0));
         let mut draw = |range: [f32; 2]| range[0] + range[1] * unit(random.next_word());
-        let height_m = draw(kind.height_m);
+        let height_m = draw(kind.height_m) * vigour;
         let width_m = draw(kind.width_m);
-        let stiffness = draw(kind.stiffness);
+        let stiffness = draw([kind.stiffness[0], kind.stiffness[1] * vigour]);
         let lean = draw(kind.lean);
         let turns = unit(random.next_word());
         Plant {
@@ -143,29 +211,30 @@ impl Seeds {
             stiffness,
             lean,
             flexibility: kind.flexibility,
-            species: species as u32,
+            species,
             flutter_turns: unit(random.next_word()),
             shade: random.next_word(),
         }
     }
 }
 
-/// Place in a seeding cell, 0…1 along x and z. Half 0 of an evenly cut cell has its right angle at
-/// (1, 0), half 1 at (0, 1); of an oddly cut one at (0, 0) and (1, 1). From the right angle both
-/// legs run along the axes, so that eq. 25 needs no vertices.
-fn root_in_cell(cell: [u32; 2], half: u32, words: [u32; 2]) -> [f32; 2] {
-    let [mut a, mut b] = words;
-    // Eq. 23-24: r₁ + r₂ ≥ 1, the carry of the sum, reflects both.
-    if a.checked_add(b).is_none() {
-        (a, b) = (!a, !b);
-    }
+/// Steps that a seeding cell's side is divided into.
+pub const CELL_STEPS: u32 = 1 << 24;
+
+/// Place in a seeding cell along x and z, in 2⁻²⁴ of its side, given the shares of both legs as
+/// words (eq. 25). Half 0 of an evenly cut cell has its right angle at (1, 0), half 1 at (0, 1); of
+/// an oddly cut one at (0, 0) and (1, 1). From the right angle both legs run along the axes, so that
+/// no vertices are needed.
+fn in_cell(cell: [u32; 2], half: u32, [a, b]: [u32; 2]) -> [u32; 2] {
     let even = (cell[0] + cell[1]) & 1 == 0;
-    let right_angle_at_end = [even != (half == 1), half == 1];
-    let along = |at_end: bool, r: u32| if at_end { 1.0 - unit(r) } else { unit(r) };
-    [
-        along(right_angle_at_end[0], a),
-        along(right_angle_at_end[1], b),
-    ]
+    let along = |at_end: bool, r: u32| {
+        if at_end {
+            CELL_STEPS - (r >> 8)
+        } else {
+            r >> 8
+        }
+    };
+    [along(even != (half == 1), a), along(half == 1, b)]
 }
 
 fn numbers(kind: &Species, range: &SpeciesRange, share_below: u32) -> SpeciesNumbers {
@@ -178,5 +247,8 @@ fn numbers(kind: &Species, range: &SpeciesRange, share_below: u32) -> SpeciesNum
         lean: span(range.lean),
         flexibility: kind.flexibility,
         tint_rgb: kind.tint_rgb,
+        dwindle: kind.likes.as_ref().map_or(0.0, |likes| likes.dwindle),
+        bends: kind.response == Response::Bends,
+        form: kind.form,
     }
 }

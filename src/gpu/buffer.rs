@@ -153,6 +153,14 @@ impl<T: Pod> Buffer<T> {
         Ok(grow)
     }
 
+    /// Another buffer of this label and usage, zeroed.
+    ///
+    /// # Errors
+    /// As for [`Buffer::new`].
+    pub fn of_len(&self, gpu: &Gpu, len: usize) -> Result<Self, GpuError> {
+        Self::new(gpu, self.label, len, self.raw.usage())
+    }
+
     /// Makes room for `len` elements, keeping those there are. Returns true if the buffer was
     /// replaced, so that bind groups must be made anew.
     ///

@@ -6,12 +6,14 @@
 
 use wgpu::BufferUsages;
 
+use super::base_texels::base_texels;
 use super::{Buffer, Gpu, GpuError};
 use crate::field::blade_table::Spacing;
+use crate::field::kinds::{MAX_TASTES, Taste};
 use crate::field::plant::{MAX_SPECIES, SpeciesNumbers};
 use crate::field::pose::{MAX_SEGMENTS, wind_share};
 use crate::field::wind::{WAVES, Wave};
-use crate::field::{Anchor, Field, FieldGrid, TileId, WindNow};
+use crate::field::{Anchor, Field, TileId, WindNow};
 use crate::gpu_struct;
 use crate::sim::work::TileWork;
 
@@ -34,6 +36,20 @@ gpu_struct! {
         pub tint_rgb: [f32; 3],
         pub flexibility: f32,
         pub share_below: u32,
+        pub dwindle: f32,
+        pub bends: u32,
+        pub spare: u32,
+    }
+}
+
+gpu_struct! {
+    /// A liking for a colour of the ground.
+    pub struct TasteUniform {
+        pub hsv: [u32; 3],
+        pub exponent: u32,
+        pub weights: [u32; 3],
+        pub share_log: i32,
+        pub threshold_log: i32,
         pub spare_a: u32,
         pub spare_b: [u32; 2],
     }
@@ -60,8 +76,15 @@ gpu_struct! {
         pub segment_share: f32,
         pub reach_m: f32,
         pub stiffness_knee: f32,
+        pub map_texels: [u32; 2],
+        pub map_step: u32,
+        pub taste_count: u32,
+        pub cluster: u32,
+        pub spare_a: u32,
+        pub spare_b: [u32; 2],
         pub wind_shares: [[f32; 4]; MAX_SEGMENTS / 4],
         pub species: [SpeciesUniform; MAX_SPECIES],
+        pub tastes: [TasteUniform; MAX_TASTES],
     }
 }
 
@@ -102,7 +125,7 @@ gpu_struct! {
         pub state: u32,
         pub first_contact: u32,
         pub end_contact: u32,
-        pub spare: [u32; 2],
+        pub anchor_on_map: [u32; 2],
     }
 }
 
@@ -116,6 +139,21 @@ impl From<&SpeciesNumbers> for SpeciesUniform {
             tint_rgb: kind.tint_rgb,
             flexibility: kind.flexibility,
             share_below: kind.share_below,
+            dwindle: kind.dwindle,
+            bends: kind.bends.into(),
+            spare: 0,
+        }
+    }
+}
+
+impl From<&Taste> for TasteUniform {
+    fn from(taste: &Taste) -> Self {
+        Self {
+            hsv: taste.hsv,
+            exponent: taste.exponent,
+            weights: taste.weights,
+            share_log: taste.share_log,
+            threshold_log: taste.threshold_log,
             spare_a: 0,
             spare_b: [0; 2],
         }
@@ -129,6 +167,11 @@ impl FieldUniform {
         let mut species = [SpeciesUniform::from(&SpeciesNumbers::default()); MAX_SPECIES];
         for (place, kind) in species.iter_mut().zip(&seeds.species) {
             *place = kind.into();
+        }
+        let mut tastes = [TasteUniform::from(&Taste::default()); MAX_TASTES];
+        let kinds = seeds.kinds.as_ref();
+        for (place, taste) in tastes.iter_mut().zip(kinds.iter().flat_map(|k| &k.tastes)) {
+            *place = taste.into();
         }
         let segments = table.segments as usize;
         let mut wind_shares = [[0.0; 4]; MAX_SEGMENTS / 4];
@@ -157,8 +200,15 @@ impl FieldUniform {
                 Spacing::Knee(knee) => knee,
                 Spacing::Even | Spacing::FourthPower => NO_KNEE,
             },
+            map_texels: kinds.map_or([1; 2], |k| [k.map.columns, k.map.rows]),
+            map_step: kinds.map_or(0, |k| k.step),
+            taste_count: kinds.map_or(0, |k| k.tastes.len() as u32),
+            cluster: seeds.cluster,
+            spare_a: 0,
+            spare_b: [0; 2],
             wind_shares,
             species,
+            tastes,
         }
     }
 }
@@ -193,11 +243,11 @@ impl TileRecord {
     /// A tile that rests.
     pub fn resting(field: &Field, tile: TileId) -> Self {
         let anchor = field.grid.anchor_of(tile, &field.ground);
-        Self::at(&field.grid, tile, &anchor)
+        Self::at(field, tile, &anchor)
     }
 
     /// An active tile with its run of contacts.
-    pub fn active(grid: &FieldGrid, work: &TileWork) -> Self {
+    pub fn active(field: &Field, work: &TileWork) -> Self {
         let state = if work.contacts.is_empty() {
             TILE_RECOVERING
         } else {
@@ -208,11 +258,13 @@ impl TileRecord {
             state,
             first_contact: work.contacts.start,
             end_contact: work.contacts.end,
-            ..Self::at(grid, work.tile, &work.anchor)
+            ..Self::at(field, work.tile, &work.anchor)
         }
     }
 
-    fn at(grid: &FieldGrid, tile: TileId, anchor: &Anchor) -> Self {
+    fn at(field: &Field, tile: TileId, anchor: &Anchor) -> Self {
+        let grid = &field.grid;
+        let kinds = field.seeds.kinds.as_ref();
         Self {
             tile,
             slab: NO_SLAB,
@@ -224,33 +276,44 @@ impl TileRecord {
             state: TILE_RESTING,
             first_contact: 0,
             end_contact: 0,
-            spare: [0; 2],
+            anchor_on_map: kinds.map_or([0; 2], |kinds| kinds.anchor_on_map(grid, anchor)),
         }
     }
 }
 
-/// Bind group 0: the field, its height samples, its blade table, the wind.
+/// Bind group 0: the field, its height samples, its blade table, the wind, the base map's bytes.
 #[derive(Clone, Debug)]
 pub struct FieldBuffers {
     pub uniform: Buffer<FieldUniform>,
     pub heights_m: Buffer<f32>,
     pub blade_directions: Buffer<[f32; 2]>,
     pub wind: Buffer<WindUniform>,
+    /// The base map as stored, for scores in integers; one texel where kinds do not look at it.
+    pub base_texels: wgpu::TextureView,
     pub bind_group: wgpu::BindGroup,
 }
 
 impl FieldBuffers {
     /// The layout of bind group 0; the same for every pipeline that imports `shared/field.wgsl`.
     pub fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        let of_type = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::all(),
-            ty: wgpu::BindingType::Buffer {
+            ty,
+            count: None,
+        };
+        let entry = |binding, ty| {
+            let buffer = wgpu::BindingType::Buffer {
                 ty,
                 has_dynamic_offset: false,
                 min_binding_size: None,
-            },
-            count: None,
+            };
+            of_type(binding, buffer)
+        };
+        let texels = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Uint,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
         };
         let uniform = wgpu::BufferBindingType::Uniform;
         let storage = wgpu::BufferBindingType::Storage { read_only: true };
@@ -262,12 +325,13 @@ impl FieldBuffers {
                     entry(1, storage),
                     entry(2, storage),
                     entry(3, uniform),
+                    of_type(4, texels),
                 ],
             })
     }
 
     /// # Errors
-    /// A ground or a table larger than the device can bind.
+    /// A ground, a table or a base map larger than the device can bind.
     pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, field: &Field) -> Result<Self, GpuError> {
         let uniform = Buffer::with(
             gpu,
@@ -288,6 +352,7 @@ impl FieldBuffers {
             BufferUsages::STORAGE,
         )?;
         let wind = Buffer::new(gpu, "wind", 1, BufferUsages::UNIFORM)?;
+        let base_texels = base_texels(gpu, field)?;
         let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("field"),
             layout,
@@ -296,6 +361,7 @@ impl FieldBuffers {
                 entry(1, heights_m.binding()),
                 entry(2, blade_directions.binding()),
                 entry(3, wind.binding()),
+                entry(4, wgpu::BindingResource::TextureView(&base_texels)),
             ],
         });
         Ok(Self {
@@ -303,6 +369,7 @@ impl FieldBuffers {
             heights_m,
             blade_directions,
             wind,
+            base_texels,
             bind_group,
         })
     }

@@ -311,7 +311,7 @@ impl GpuGrass {
         let tiles: Vec<TileRecord> = all()
             .filter(collides)
             .chain(all().filter(|tile| !collides(tile)))
-            .map(|tile| TileRecord::active(grid, tile))
+            .map(|tile| TileRecord::active(&meadow.field, tile))
             .collect();
         self.active = tiles.len() as u32;
         self.colliding = all().filter(collides).count() as u32;

@@ -27,7 +27,9 @@ pub trait GpuStruct: Pod {
 
 /// Layouts of the structs that the shaders of this layer read.
 pub fn layouts() -> Vec<StructLayout> {
-    use super::field_data::{FieldUniform, SpeciesUniform, TileRecord, WaveUniform, WindUniform};
+    use super::field_data::{
+        FieldUniform, SpeciesUniform, TasteUniform, TileRecord, WaveUniform, WindUniform,
+    };
     use super::tick_data::{ContactRecord, CubeJob, PartRecord, SolidRecord, TickUniform};
     vec![
         ContactRecord::layout(),
@@ -36,6 +38,7 @@ pub fn layouts() -> Vec<StructLayout> {
         PartRecord::layout(),
         SolidRecord::layout(),
         SpeciesUniform::layout(),
+        TasteUniform::layout(),
         TickUniform::layout(),
         TileRecord::layout(),
         WaveUniform::layout(),

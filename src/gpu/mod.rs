@@ -5,6 +5,7 @@
 //! stays inside WebGPU's default limits and features, except for larger storage bindings where
 //! the adapter has them and for timestamps, which are optional.
 
+mod base_texels;
 mod buffer;
 pub mod cubes;
 mod device;

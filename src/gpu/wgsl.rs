@@ -11,9 +11,12 @@ use super::field_data::{NO_SLAB, TILE_COLLIDING, TILE_RECOVERING, TILE_RESTING};
 use super::grass_buffers::{RELAX_GROUPS, TOUCHED_HEADER};
 use super::passes::{MOST_GROUPS, WORKGROUP};
 use super::tick_data::{SOLID_BALL, SOLID_BOX, SOLID_CAPSULE, SOLID_CONVEX, SOLID_CYLINDER};
+use crate::base::fixed::{EXP2_TABLE, LOG2_TABLE};
 use crate::base::trig::SINE_QUARTER;
+use crate::field::clusters::{CLUSTER_WORD, GRID_WORD};
 use crate::field::grid::ANCHOR_CELLS;
-use crate::field::plant::MAX_SPECIES;
+use crate::field::kinds::{HUE_TURN, LEAST_SQUARED, MAX_TASTES};
+use crate::field::plant::{CELL_STEPS, MAX_SPECIES};
 use crate::field::pose::{MAX_NODES, MAX_SEGMENTS};
 use crate::field::wind::WAVES;
 use crate::sim::collide::PINNED_M;
@@ -114,6 +117,7 @@ macro_rules! wgsl_file {
 
 /// Files that any layer's shaders may import.
 pub const SHARED: &[WgslFile] = &[
+    wgsl_file!("shared/clusters.wgsl", CLUSTER_WORD, GRID_WORD),
     wgsl_file!("shared/contact.wgsl", FACE_MASK, NO_FACE),
     wgsl_file!(
         "shared/cube.wgsl",
@@ -123,10 +127,18 @@ pub const SHARED: &[WgslFile] = &[
         LEAST_WEIGHT,
         NO_FACE
     ),
-    wgsl_file!("shared/field.wgsl", MAX_SPECIES),
+    wgsl_file!("shared/field.wgsl", MAX_SPECIES, MAX_TASTES),
+    wgsl_file!("shared/fixed.wgsl", EXP2_TABLE, LOG2_TABLE),
     wgsl_file!("shared/ground.wgsl"),
+    wgsl_file!(
+        "shared/kinds.wgsl",
+        ANCHOR_CELLS,
+        HUE_TURN,
+        LEAST_SQUARED,
+        MAX_TASTES
+    ),
     wgsl_file!("shared/philox.wgsl"),
-    wgsl_file!("shared/plant.wgsl", ANCHOR_CELLS),
+    wgsl_file!("shared/plant.wgsl", ANCHOR_CELLS, CELL_STEPS),
     wgsl_file!("shared/pose.wgsl", MAX_NODES),
     wgsl_file!("shared/recovering.wgsl", ASIDE),
     wgsl_file!("shared/rigid.wgsl"),

@@ -1,19 +1,30 @@
-//! Which tiles' blades a frame draws, and how finely.
+//! Which tiles' plants a frame draws, and how finely.
 //!
 //! Per frame the processor lists the tiles in sight, near to far, and nothing per plant. Tiles of
-//! one band of distance share a draw call: they have the same number of segments, a subset of the
-//! simulated nodes, and at most the same number of blades. How many blades of a tile are drawn
-//! falls smoothly with its distance; they are a prefix of the tile's sequence, and their width
-//! makes up for those left out.
+//! one band of distance have the same detail: the same number of drawn segments, a subset of the
+//! simulated nodes. How many plants of a tile are drawn falls smoothly with its distance; they are
+//! a prefix of the tile's sequence, and their width makes up for those left out.
 
 use crate::base::Vec3;
 use crate::field::TileId;
 use crate::gpu::field_data::TileRecord;
 use crate::gpu_struct;
 
-use super::blades::BladesInput;
 use super::camera::{Frustum, View};
 use super::error::RenderError;
+use super::plant_form::DETAILS;
+use super::plants::BladesInput;
+
+/// What decides how many of a triangle's plants are drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Count {
+    /// All of them up to [`BladeDetail::full_m`], then fewer with distance, whatever the slope.
+    Distance,
+    /// P15 eq. 1: so many per pixel of the triangle's projected area.
+    ProjectedArea { per_px: f32 },
+    /// P15 eq. 2: the same from its area in the world and its distance.
+    WorldArea { per_px: f32 },
+}
 
 /// How far and how finely blades are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +36,7 @@ pub struct BladeDetail {
     /// Blades drawn per plant near by, at least 1: the simulated one and companions that move
     /// with it.
     pub tuft: u32,
+    pub count: Count,
 }
 
 impl Default for BladeDetail {
@@ -33,6 +45,7 @@ impl Default for BladeDetail {
             full_m: 12.0,
             reach_m: 110.0,
             tuft: 4,
+            count: Count::Distance,
         }
     }
 }
@@ -44,6 +57,7 @@ impl BladeDetail {
             full_m: 4.0,
             reach_m: 50.0,
             tuft: 3,
+            count: Count::Distance,
         }
     }
 
@@ -51,13 +65,18 @@ impl BladeDetail {
     /// Distances that are not finite and positive, an empty tuft.
     pub(super) fn check(self) -> Result<(), RenderError> {
         let lengths = [self.full_m, self.reach_m];
-        if lengths.iter().all(|m| m.is_finite() && *m > 0.0) && self.tuft > 0 {
+        let per_px = match self.count {
+            Count::Distance => 1.0,
+            Count::ProjectedArea { per_px } | Count::WorldArea { per_px } => per_px,
+        };
+        let is_positive = |number: &f32| number.is_finite() && *number > 0.0;
+        if lengths.iter().all(is_positive) && is_positive(&per_px) && self.tuft > 0 {
             return Ok(());
         }
         Err(RenderError::BadInput {
             what: "the detail of the blades",
             found: format!("{self:?}"),
-            wanted: "give distances above 0 and at least one blade per plant",
+            wanted: "give distances and a density above 0 and at least one blade per plant",
         })
     }
 
@@ -71,22 +90,14 @@ impl BladeDetail {
 }
 
 gpu_struct! {
-    pub(super) struct Band {
-        pub(super) first_tile: u32,
-        pub(super) blades: u32,
-        pub(super) stride: u32,
-        pub(super) steps: u32,
-    }
-}
-
-gpu_struct! {
     pub(super) struct DrawnTile {
         tile: TileRecord,
         anchor_from_eye: [f32; 3],
-        pub(super) blades: f32,
-        widen: f32,
-        spare_a: f32,
-        spare_b: [f32; 2],
+        share: f32,
+        pub(super) detail: u32,
+        pub(super) ranks: u32,
+        boost: f32,
+        spare: u32,
     }
 }
 
@@ -97,9 +108,20 @@ const BAND_RATIO: f64 = std::f64::consts::SQRT_2;
 const ACTIVE_NEARNESS: f64 = 0.4;
 /// Share of the lost cover that the remaining blades make up for by their width; the ground's
 /// own look supplies the rest.
-const WIDEN_POWER: f64 = 0.75;
-/// Most instances of one draw call; what is more is split.
-const MOST_INSTANCES: u64 = 1 << 30;
+pub(super) const WIDEN_POWER: f32 = 0.75;
+
+/// Columns and rows of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Size {
+    pub(super) columns: u32,
+    pub(super) rows: u32,
+}
+
+impl Size {
+    pub(super) fn aspect(self) -> f32 {
+        self.columns as f32 / self.rows as f32
+    }
+}
 
 /// A tile in sight.
 #[derive(Clone, Copy, Debug)]
@@ -160,23 +182,12 @@ fn sight_of(
     })
 }
 
-/// Draw calls, near to far: each a band and its tiles. `first_tile` is left to the caller.
-pub(super) fn bands_in_sight(
-    input: &BladesInput<'_>,
-    view: &View,
-    aspect: f32,
-) -> Vec<(Band, Vec<DrawnTile>)> {
-    let seen = tiles_in_sight(input, view, aspect);
-    let mut draws = Vec::new();
-    for run in seen.chunk_by(|a, b| a.band == b.band) {
-        let band = band_of(input, run[0].band);
-        let most_tiles = (MOST_INSTANCES / u64::from(band.blades)).max(1) as usize;
-        for part in run.chunks(most_tiles) {
-            let tiles = part.iter().map(|sight| drawn_tile(input, view, sight));
-            draws.push((band, tiles.collect()));
-        }
-    }
-    draws
+/// Tiles in sight as the device gets them, near to far.
+pub(super) fn drawn_tiles(input: &BladesInput<'_>, view: &View, picture: Size) -> Vec<DrawnTile> {
+    let seen = tiles_in_sight(input, view, picture.aspect());
+    seen.iter()
+        .map(|sight| drawn_tile(input, view, picture, sight))
+        .collect()
 }
 
 /// Bands start at half the distance of full density; band 0 lies before that.
@@ -189,33 +200,9 @@ fn band_at(detail: BladeDetail, distance_m: f64) -> u32 {
     }
 }
 
-/// Distance at which a band starts.
-fn band_start_m(detail: BladeDetail, band: u32) -> f64 {
-    if band == 0 {
-        0.0
-    } else {
-        0.5 * f64::from(detail.full_m) * BAND_RATIO.powi(band as i32 - 1)
-    }
-}
-
-fn band_of(input: &BladesInput<'_>, band: u32) -> Band {
-    let start = band_start_m(input.detail, band);
-    let all = blades_per_tile(input);
-    let segments = input.field.table.segments;
-    // P15 eq. 4 with half the distance of full density as reference, in steps of whole nodes.
-    let stride = match band {
-        0 => 1,
-        1..=2 => 2,
-        3..=4 => 4,
-        _ => segments,
-    }
-    .min(segments);
-    Band {
-        first_tile: 0,
-        blades: (all * input.detail.share(start)).ceil().max(1.0) as u32,
-        stride,
-        steps: segments.div_ceil(stride),
-    }
+/// Detail of a band's plants, 0 the finest: each of the following is good for two bands.
+fn detail_of(band: u32) -> u32 {
+    band.div_ceil(2).min(DETAILS - 1)
 }
 
 fn slab_of(input: &BladesInput<'_>, tile: TileId) -> Option<u32> {
@@ -223,26 +210,53 @@ fn slab_of(input: &BladesInput<'_>, tile: TileId) -> Option<u32> {
     found.ok().map(|index| input.active[index].1)
 }
 
-fn blades_per_tile(input: &BladesInput<'_>) -> f64 {
-    f64::from(input.field.grid.plants_per_tile()) * f64::from(input.detail.tuft.max(1))
+/// Plants of a seeding triangle and their companions: n_max of eq. 1.
+pub(super) fn most_on_triangle(input: &BladesInput<'_>) -> f64 {
+    f64::from(input.field.grid.plants_per_triangle()) * f64::from(input.detail.tuft.max(1))
 }
 
-fn drawn_tile(input: &BladesInput<'_>, view: &View, sight: &Sight) -> DrawnTile {
+/// A number that no triangle of a tile's count exceeds.
+fn count_bound(input: &BladesInput<'_>, view: &View, picture: Size, sight: &Sight) -> f64 {
+    let most = most_on_triangle(input);
+    let per_px = match input.detail.count {
+        Count::Distance => return input.detail.share(sight.distance_m) * most,
+        Count::ProjectedArea { per_px } | Count::WorldArea { per_px } => f64::from(per_px),
+    };
+    let (field, grid) = (input.field, &input.field.grid);
+    let cell_m = f64::from(grid.cell_m);
+    let [low, high] = grid.tile_heights(sight.tile, &field.ground).map(f64::from);
+    let slope = (high - low) / cell_m;
+    let area_m2 = 0.5 * cell_m * cell_m * (1.0 + slope * slope).sqrt();
+    let viewpoint = view.viewpoint(picture.aspect(), picture.rows);
+    // Off the middle of the picture an angle covers more pixels.
+    let off_middle = 1.0 + viewpoint.half_tan.iter().map(|t| t * t).sum::<f64>();
+    let away_px = sight.distance_m * viewpoint.pixel_rad;
+    let bound = per_px * area_m2 * off_middle.powf(1.5) / (away_px * away_px).max(1e-12);
+    bound.min(most)
+}
+
+fn drawn_tile(input: &BladesInput<'_>, view: &View, picture: Size, sight: &Sight) -> DrawnTile {
     let (field, grid) = (input.field, &input.field.grid);
     let mut record = TileRecord::resting(field, sight.tile);
+    let mut boost = 1.0;
     if let Some(slab) = slab_of(input, sight.tile) {
         record.slab = slab;
+        boost /= ACTIVE_NEARNESS * ACTIVE_NEARNESS;
     }
     let anchor = grid.anchor_of(sight.tile, &field.ground);
     let origin = Vec3::of(grid.anchor_in_world(&anchor, &field.ground));
-    let share = input.detail.share(sight.distance_m);
+    // The count's fraction is rounded up or down by chance.
+    let most_ranks = most_on_triangle(input) as u32;
+    let bound = count_bound(input, view, picture, sight);
+    let ranks = ((bound + 1.0).ceil() as u32).min(most_ranks);
     DrawnTile {
         tile: record,
         anchor_from_eye: view.from_eye(origin),
-        blades: (blades_per_tile(input) * share) as f32,
-        widen: share.powf(-WIDEN_POWER) as f32,
-        spare_a: 0.0,
-        spare_b: [0.0; 2],
+        share: input.detail.share(sight.distance_m) as f32,
+        detail: detail_of(sight.band),
+        ranks: ranks * grid.triangles_per_tile(),
+        boost: boost as f32,
+        spare: 0,
     }
 }
 
@@ -251,24 +265,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bands_lie_end_to_end() {
+    fn detail_falls_with_distance() {
         let detail = BladeDetail::default();
-        for band in 1..12 {
-            let start = band_start_m(detail, band);
-            assert_eq!(band_at(detail, start * 1.0001), band);
-            assert_eq!(band_at(detail, start * 0.9999), band - 1);
-        }
-        assert_eq!(band_at(detail, 0.0), 0);
-    }
-
-    /// A band's draw call has as many places as its nearest tile needs.
-    #[test]
-    fn no_tile_needs_more_places_than_its_band_has() {
-        let detail = BladeDetail::software();
-        for step in 1..500 {
-            let distance = 0.1 * f64::from(step);
-            let start = band_start_m(detail, band_at(detail, distance));
-            assert!(detail.share(distance) <= detail.share(start));
-        }
+        assert_eq!(detail_of(band_at(detail, 0.0)), 0);
+        let at = |metres: f64| detail_of(band_at(detail, metres));
+        assert!((0..500).all(|step| at(f64::from(step)) <= at(f64::from(step + 1))));
+        assert_eq!(at(0.49 * 12.0), 0);
+        assert_eq!(at(0.51 * 12.0), 1);
+        assert_eq!(at(1e6), DETAILS - 1);
     }
 }

@@ -2,16 +2,17 @@
 
 use crate::bodies::RigidShape;
 use crate::field::Field;
-use crate::gpu::{Gpu, PassTimer};
+use crate::gpu::{FieldBuffers, Gpu, PassTimer};
 use crate::terrain::bintree::MeshChange;
 
-use super::blades::{BladeCounts, BladesInput, BladesLayer, Canopy};
+use super::blade_tiles::Size;
 use super::bodies::{BodiesLayer, BodyInstance};
 use super::camera::View;
 use super::error::RenderError;
 use super::ground_look::{GroundLook, GroundTexture};
 use super::ground_mesh::TerrainDetail;
 use super::overlay::{OverlayLayer, TileMark};
+use super::plants::{BladeCounts, BladesInput, DrawnPlants, PlantsLayer};
 use super::shadow::{ShadowFit, ShadowMap};
 use super::sky::{SkyLayer, Sun};
 use super::targets::{Targets, most_samples};
@@ -25,7 +26,7 @@ pub struct Renderer {
     groups: ViewGroups,
     shadow: ShadowMap,
     bodies: BodiesLayer,
-    blades: BladesLayer,
+    plants: PlantsLayer,
     terrain: TerrainLayer,
     sky: SkyLayer,
     overlay: OverlayLayer,
@@ -70,7 +71,7 @@ impl Renderer {
         let tonemap = TonemapLayer::new(gpu, format)?;
         Ok(Self {
             bodies: BodiesLayer::new(gpu, &groups, samples)?,
-            blades: BladesLayer::new(gpu, &groups, samples)?,
+            plants: PlantsLayer::new(gpu, &groups, samples)?,
             terrain: TerrainLayer::new(gpu, &groups, samples)?,
             sky: SkyLayer::new(gpu, &groups, samples)?,
             overlay: OverlayLayer::new(gpu, &groups, samples)?,
@@ -96,10 +97,10 @@ impl Renderer {
         shapes: &[RigidShape],
     ) -> Result<(), RenderError> {
         let colour = GroundTexture::new(gpu, look.map)?;
-        let canopy = Canopy::of(field);
+        let buffers = FieldBuffers::new(gpu, &FieldBuffers::layout(gpu), field)?;
         self.terrain
-            .set_ground(gpu, field, &colour, look.soil_rgb, canopy)?;
-        self.blades.set_field(gpu, field, &colour)?;
+            .set_ground(gpu, field, &buffers, &colour, look.soil_rgb)?;
+        self.plants.set_field(field, buffers, &colour);
         self.set_shapes(gpu, shapes)
     }
 
@@ -125,7 +126,16 @@ impl Renderer {
 
     /// What the last frame drew of the plants.
     pub fn blade_counts(&self) -> BladeCounts {
-        self.blades.counts
+        self.plants.counts
+    }
+
+    /// What the last frame drew of every form of plant, counted and read back from the device: for
+    /// tests and benches, since it waits.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn drawn_plants(&self, gpu: &Gpu) -> Result<Vec<DrawnPlants>, RenderError> {
+        Ok(self.plants.read_counts(gpu)?)
     }
 
     /// What the last frame's ground mesh is; `None` for a small field, which is drawn in full.
@@ -153,6 +163,7 @@ impl Renderer {
         self.write(gpu, input)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
 
+        self.plants.sort(gpu, &mut encoder, timer);
         let mut pass = self.shadow.begin(&mut encoder, timer.render("shadow"));
         self.groups.bind_unlit(&mut pass);
         self.bodies.draw_shadow(&mut pass);
@@ -161,9 +172,10 @@ impl Renderer {
         let mut pass = self.targets.begin(&mut encoder, timer.render("scene"));
         self.groups.bind(&mut pass);
         self.bodies.draw(&mut pass);
-        self.blades.draw(&mut pass);
+        self.plants.draw(&mut pass);
         self.groups.bind(&mut pass);
         self.terrain.draw(&mut pass);
+        self.groups.bind(&mut pass);
         self.sky.draw(&mut pass);
         self.overlay.draw(&mut pass);
         drop(pass);
@@ -181,7 +193,6 @@ impl Renderer {
     /// Writes what the layers need for this frame.
     fn write(&mut self, gpu: &Gpu, input: &FrameInput<'_>) -> Result<(), RenderError> {
         let size = self.targets.size;
-        let aspect = size[0] as f32 / size[1] as f32;
         let light = input.sun.daylight();
         let casters = self.bodies.write(gpu, input.view, input.bodies)?;
         let fit = ShadowFit::new(&light, input.view, &casters);
@@ -193,9 +204,11 @@ impl Renderer {
             .write(gpu, input.view, size, self.terrain_detail, blades)?;
         if let Some(blades) = &input.blades {
             blades.detail.check()?;
-            self.blades.write(gpu, input.view, aspect, blades)?;
+            let [columns, rows] = size;
+            let picture = Size { columns, rows };
+            self.plants.write(gpu, input.view, picture, blades)?;
         } else {
-            self.blades.clear();
+            self.plants.clear();
         }
         self.overlay.write(gpu, input.view, input.marks)?;
         self.tonemap.write(gpu, input.exposure)?;

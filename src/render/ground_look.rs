@@ -1,6 +1,10 @@
-//! The colours of the ground, as a texture that the ground and the plants on it share.
+//! The colours of the ground, as a texture that the ground and the plants on it share, and what
+//! the ground of each kind looks like.
 
+use crate::field::Field;
+use crate::field::kinds::MAX_TASTES;
 use crate::gpu::Gpu;
+use crate::scene::Form;
 use crate::terrain::ColourMap;
 
 use super::error::RenderError;
@@ -89,6 +93,27 @@ impl GroundTexture {
             mean_rgb: mean_rgb(&map.rgba8),
         })
     }
+}
+
+/// What the ground of a kind looks like, as the shader knows it.
+pub(super) const LOOK_GRASS: u32 = 0;
+pub(super) const LOOK_GRAVEL: u32 = 1;
+pub(super) const LOOK_LITTER: u32 = 2;
+pub(super) const LOOK_BARE: u32 = 3;
+/// Rows of four that hold a number for every kind and bare ground.
+pub(super) const TASTE_ROWS: u32 = (MAX_TASTES as u32).div_ceil(4);
+
+/// The looks of a field's kinds and bare grounds.
+pub(super) fn looks(field: &Field) -> [[u32; 4]; TASTE_ROWS as usize] {
+    let mut looks = [[LOOK_BARE; 4]; TASTE_ROWS as usize];
+    for (n, kind) in field.seeds.species.iter().enumerate() {
+        looks[n / 4][n % 4] = match kind.form {
+            Form::Blade | Form::Flower { .. } => LOOK_GRASS,
+            Form::Leaf | Form::Twig => LOOK_LITTER,
+            Form::Gravel => LOOK_GRAVEL,
+        };
+    }
+    looks
 }
 
 /// Mean of sRGB-encoded texels, as linear light.

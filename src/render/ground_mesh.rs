@@ -9,8 +9,8 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::terrain::HeightGrid;
 use crate::terrain::bintree::{Bintree, DrawnMesh, Mesh, MeshChange, MeshDetail, Point, Viewpoint};
 
-use super::blades::BladesInput;
 use super::error::RenderError;
+use super::plants::BladesInput;
 use super::terrain::edge_heights;
 
 /// Fields of more triangles than this are drawn through their bintree; drawing fewer takes less

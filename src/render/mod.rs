@@ -9,23 +9,29 @@ mod blades;
 mod bodies;
 mod camera;
 mod error;
+mod flowers;
 mod frame;
+mod gravel;
 mod ground_look;
 mod ground_mesh;
+mod leaves;
 mod meadow_view;
 mod overlay;
 mod picture;
 mod pipeline;
+mod plant_form;
+mod plants;
 mod shadow;
 mod sky;
+mod sort_plants;
 mod targets;
 mod terrain;
 mod tonemap;
+mod twigs;
 mod view_group;
 
 pub use active_nodes::ActiveNodes;
-pub use blade_tiles::BladeDetail;
-pub use blades::{BladeCounts, BladesInput};
+pub use blade_tiles::{BladeDetail, Count};
 pub use bodies::BodyInstance;
 pub use camera::{Frustum, View};
 pub use error::RenderError;
@@ -35,14 +41,24 @@ pub use ground_mesh::TerrainDetail;
 pub use meadow_view::{active_slabs, bodies_at, scene_view, tile_marks};
 pub use overlay::{TileMark, TileTone};
 pub use picture::{Animation, Picture, PictureTarget};
+pub use plants::{BladeCounts, BladesInput, DrawnPlants};
 pub use sky::{Daylight, Sun};
 pub use tonemap::Exposure;
 
+use crate::field::count::{COUNT_WORD, NEAR_M};
+use crate::field::grid::ANCHOR_CELLS;
+use crate::field::kinds::MAX_TASTES;
+use crate::field::plant::MAX_SPECIES;
 use crate::gpu::GpuStruct;
 use crate::gpu::layout::StructLayout;
+use crate::gpu::passes::WORKGROUP;
 use crate::gpu::wgsl::WgslFile;
 use crate::wgsl_file;
+use blade_tiles::WIDEN_POWER;
 use blades::{TUFT_RADIUS_M, TUFT_TURNS};
+use ground_look::{LOOK_BARE, LOOK_GRASS, LOOK_GRAVEL, LOOK_LITTER, TASTE_ROWS};
+use plant_form::{BUCKET_VERTICES, BUCKETS, DETAILS, FORM_BLADE, FORM_COUNT};
+use sort_plants::{COUNT_BY_DISTANCE, COUNT_BY_PROJECTED_AREA, LEAST_GROWN, NO_BUCKET};
 use terrain::{CHUNK_SAMPLES, LAND_RINGS_M};
 
 /// Format in which light is added up before it is shown.
@@ -50,28 +66,70 @@ const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// The shaders of this layer and what only they import.
 pub const SHADERS: &[WgslFile] = &[
+    wgsl_file!("shared/count.wgsl", ANCHOR_CELLS, COUNT_WORD, NEAR_M),
+    wgsl_file!(
+        "shared/drawn_plant.wgsl",
+        BUCKET_VERTICES,
+        BUCKETS,
+        MAX_SPECIES
+    ),
+    wgsl_file!("shared/drawn_tile.wgsl"),
     wgsl_file!("shared/frame.wgsl"),
     wgsl_file!("shared/light.wgsl"),
     wgsl_file!("shared/noise.wgsl"),
+    wgsl_file!("shared/plant_light.wgsl"),
     wgsl_file!("shared/screen.wgsl"),
     wgsl_file!("shared/shadow.wgsl"),
     wgsl_file!("blades.wgsl", TUFT_RADIUS_M, TUFT_TURNS),
     wgsl_file!("bodies.wgsl"),
+    wgsl_file!("flowers.wgsl"),
+    wgsl_file!("gravel.wgsl"),
+    wgsl_file!("leaves.wgsl"),
     wgsl_file!("overlay.wgsl"),
     wgsl_file!("sky.wgsl"),
-    wgsl_file!("terrain.wgsl", CHUNK_SAMPLES, LAND_RINGS_M),
+    wgsl_file!(
+        "sort_plants.wgsl",
+        BUCKET_VERTICES,
+        BUCKETS,
+        COUNT_BY_DISTANCE,
+        COUNT_BY_PROJECTED_AREA,
+        DETAILS,
+        FORM_BLADE,
+        FORM_COUNT,
+        LEAST_GROWN,
+        NO_BUCKET,
+        WIDEN_POWER,
+        WORKGROUP
+    ),
+    wgsl_file!(
+        "terrain.wgsl",
+        CHUNK_SAMPLES,
+        LAND_RINGS_M,
+        LOOK_BARE,
+        LOOK_GRASS,
+        LOOK_GRAVEL,
+        LOOK_LITTER,
+        MAX_TASTES,
+        TASTE_ROWS
+    ),
     wgsl_file!("tonemap.wgsl"),
+    wgsl_file!("twigs.wgsl"),
 ];
 
 /// Layouts of the structs that the shaders of this layer read.
 pub fn layouts() -> Vec<StructLayout> {
     vec![
         view_group::Frame::layout(),
-        blades::BladeLook::layout(),
-        blade_tiles::Band::layout(),
         blade_tiles::DrawnTile::layout(),
         bodies::BodyRecord::layout(),
         overlay::OverlayBox::layout(),
+        plants::Bucket::layout(),
+        plants::FormUniform::layout(),
+        plants::PlantLook::layout(),
+        sort_plants::CountUniform::layout(),
+        sort_plants::DrawArgs::layout(),
+        sort_plants::Job::layout(),
+        sort_plants::SortUniform::layout(),
         terrain::Ground::layout(),
         terrain::Chunk::layout(),
         tonemap::Tonemap::layout(),

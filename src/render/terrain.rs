@@ -11,17 +11,17 @@ use wgpu::{BufferUsages, ShaderStages};
 
 use crate::base::Vec3;
 use crate::field::Field;
-use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::gpu::{Buffer, FieldBuffers, Gpu, GpuError};
 use crate::gpu_struct;
 use crate::terrain::HeightGrid;
 use crate::terrain::bintree::MeshChange;
 
-use super::blades::{BladesInput, Canopy};
 use super::camera::View;
 use super::error::RenderError;
-use super::ground_look::GroundTexture;
+use super::ground_look::{GroundTexture, TASTE_ROWS, looks};
 use super::ground_mesh::{GroundMesh, TerrainDetail};
 use super::pipeline::{DepthUse, Drawing, READ_STORAGE, UNIFORM, bind_group, group_layout};
+use super::plants::{BladesInput, Canopy};
 use super::view_group::ViewGroups;
 
 /// Samples along a chunk's side; one less is its number of squares, an even number.
@@ -53,6 +53,7 @@ gpu_struct! {
         pad_c: f32,
         eye_sample: [i32; 2],
         pad_d: [i32; 2],
+        looks: [[u32; 4]; TASTE_ROWS as usize],
     }
 }
 
@@ -79,6 +80,8 @@ struct ChunkBounds {
 #[derive(Debug)]
 struct GroundScene {
     ground: Ground,
+    /// The kinds that grow and the colours they like.
+    field: FieldBuffers,
     heights: Arc<HeightGrid>,
     /// Chunks of a small field.
     chunks: Vec<ChunkBounds>,
@@ -117,18 +120,20 @@ impl TerrainLayer {
             "ground",
             &[
                 (both, UNIFORM),
-                (both, READ_STORAGE),
                 (ShaderStages::VERTEX, READ_STORAGE),
                 (ShaderStages::FRAGMENT, texture),
                 (ShaderStages::FRAGMENT, sampler),
                 (ShaderStages::VERTEX, READ_STORAGE),
             ],
         );
+        let field_layout = FieldBuffers::layout(gpu);
+        let mut used = groups.lit(&layout);
+        used[0] = Some(&field_layout);
         let field = Drawing {
             shader: "terrain.wgsl",
             vertex: "field_vertex",
             fragment: "ground_fragment",
-            groups: groups.lit(&layout),
+            groups: used,
             depth: DepthUse::Write,
             samples,
             ..Drawing::default()
@@ -152,7 +157,7 @@ impl TerrainLayer {
         })
     }
 
-    /// Takes a field's heights and colours in place of the old ones.
+    /// Takes a field's heights, kinds and colours in place of the old ones.
     ///
     /// # Errors
     /// `TooLarge` for more samples than the device can bind.
@@ -160,13 +165,13 @@ impl TerrainLayer {
         &mut self,
         gpu: &Gpu,
         field: &Field,
+        buffers: &FieldBuffers,
         colour: &GroundTexture,
         soil_rgb: [f32; 3],
-        canopy: Canopy,
     ) -> Result<(), GpuError> {
+        let canopy = Canopy::of(field);
         let heights = Arc::clone(&field.ground);
         let storage = BufferUsages::STORAGE;
-        let samples = Buffer::with(gpu, "ground heights", &heights.heights_m, storage)?;
         let mesh = GroundMesh::if_large(gpu, &field.bintree, canopy.height_m)?;
         let chunks = match &mesh {
             Some(_) => Vec::new(),
@@ -181,7 +186,6 @@ impl TerrainLayer {
             &self.layout,
             &[
                 uniform.binding(),
-                samples.binding(),
                 records.binding(),
                 wgpu::BindingResource::TextureView(&colour.view),
                 wgpu::BindingResource::Sampler(&colour.sampler),
@@ -189,7 +193,11 @@ impl TerrainLayer {
             ],
         );
         self.scene = Some(GroundScene {
-            ground: ground_uniform(&heights, colour, soil_rgb, canopy),
+            ground: Ground {
+                looks: looks(field),
+                ..ground_uniform(&heights, colour, soil_rgb, canopy)
+            },
+            field: buffers.clone(),
             heights,
             chunks,
             mesh,
@@ -248,6 +256,7 @@ impl TerrainLayer {
         let Some(scene) = &self.scene else {
             return;
         };
+        pass.set_bind_group(0, &scene.field.bind_group, &[]);
         pass.set_bind_group(3, &scene.group, &[]);
         if let Some(mesh) = &scene.mesh {
             pass.set_pipeline(&self.mesh);
@@ -383,6 +392,7 @@ fn ground_uniform(
         pad_c: 0.0,
         eye_sample: [0; 2],
         pad_d: [0; 2],
+        looks: [[0; 4]; TASTE_ROWS as usize],
     }
 }
 

@@ -1,10 +1,13 @@
 //! A scene that is simulated and drawn: what a window, a picture and an embedding program share.
 
+use std::sync::Arc;
+
 use crate::gpu::{Gpu, GpuError, GrassKernels, PassTimer, TickError};
 use crate::render::{
     ActiveNodes, BladeCounts, BladeDetail, BladesInput, Exposure, FrameInput, GroundLook,
     RenderError, Renderer, Sun, View, active_slabs, bodies_at, scene_view, tile_marks,
 };
+use crate::scene::assets::Assets;
 use crate::scene::{Action, Camera, LoadedScene};
 use crate::sim::{Meadow, MeadowError};
 use crate::terrain::ColourMap;
@@ -101,7 +104,7 @@ impl Stage {
         size: [u32; 2],
     ) -> Result<Self, StageError> {
         let mut renderer = Renderer::new(gpu, format, size)?;
-        show(gpu, &mut renderer, &meadow)?;
+        show(gpu, &mut renderer, &meadow, &loaded.assets)?;
         Ok(Self {
             nodes: ActiveNodes::new(gpu)?,
             timer: PassTimer::new(gpu, DRAWN_PASSES),
@@ -134,7 +137,7 @@ impl Stage {
         choice: EngineChoice,
     ) -> Result<(), StageError> {
         let (meadow, engine) = lay_out(gpu, &self.kernels, loaded, choice)?;
-        show(gpu, &mut self.renderer, &meadow)?;
+        show(gpu, &mut self.renderer, &meadow, &loaded.assets)?;
         self.timeline = new_timeline(&meadow);
         self.shapes = meadow.bodies.shapes().len();
         self.loaded = loaded.clone();
@@ -312,13 +315,24 @@ fn lay_out(
     Ok((meadow, engine))
 }
 
-fn show(gpu: &Gpu, renderer: &mut Renderer, meadow: &Meadow) -> Result<(), RenderError> {
+fn show(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    meadow: &Meadow,
+    assets: &Assets,
+) -> Result<(), StageError> {
     let terrain = &meadow.scene.terrain;
+    let map = match &meadow.field.seeds.kinds {
+        Some(kinds) => Arc::clone(&kinds.map),
+        None => Arc::new(
+            ColourMap::of(terrain, &meadow.field.ground, assets).map_err(MeadowError::from)?,
+        ),
+    };
     let look = GroundLook {
-        map: &ColourMap::of(terrain, &meadow.field.ground),
+        map: &map,
         soil_rgb: terrain.soil_rgb,
     };
-    renderer.set_scene(gpu, &meadow.field, &look, meadow.bodies.shapes())
+    Ok(renderer.set_scene(gpu, &meadow.field, &look, meadow.bodies.shapes())?)
 }
 
 fn new_timeline(meadow: &Meadow) -> Timeline {

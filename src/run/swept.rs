@@ -54,7 +54,7 @@ fn swept_in(meadow: &Meadow, tile: &TileWork, body: u32) -> Vec<(TileId, u32)> {
     let segments = field.table.segments as usize;
     let mut found = Vec::new();
     for place in 0..field.grid.plants_per_tile() {
-        let Some(plant) = field.plant(&tile.anchor, tile.tile, place) else {
+        let Some(plant) = field.responding_plant(&tile.anchor, tile.tile, place) else {
             continue;
         };
         let root = Vec3::<f64>::of_f32(plant.root_in_anchor);

@@ -30,6 +30,7 @@ macro_rules! builtin {
 pub const SCENES: &[Builtin] = builtin![
     "ball_drop",
     "ball_roll",
+    "heath",
     "hills",
     "hundred_bodies",
     "meadow",
@@ -44,6 +45,10 @@ pub const ASSETS: Embedded<'static> = Embedded(&[
     (
         "assets/chair.gltf",
         include_bytes!("../../scenes/assets/chair.gltf"),
+    ),
+    (
+        "assets/heath.png",
+        include_bytes!("../../scenes/assets/heath.png"),
     ),
     (
         "assets/horseshoe.obj",
@@ -85,6 +90,7 @@ mod tests {
             let built_in = built_in.unwrap_or_else(|e| panic!("{e}"));
             assert_eq!(built_in.scene, from_file.scene);
             assert_eq!(built_in.assets.meshes, from_file.assets.meshes);
+            assert_eq!(built_in.assets.base_maps, from_file.assets.base_maps);
             loaded_names.push(from_file.name);
         }
         assert_eq!(loaded_names, names);

@@ -76,6 +76,21 @@ pub const PLANTS_PER_TILE: u64 = 65_536;
 
 pub const PLANT_DENSITY: Range = range(0.0, 10_000.0, "plants/m2");
 pub const SPECIES: usize = 8;
+/// Seeds of a cluster.
+pub const CLUSTER: Range = range(1.0, 16.0, "seeds");
+/// Grounds on which nothing grows.
+pub const BARE_GROUNDS: usize = 4;
+/// Hue of a reference colour.
+pub const HUE: Range = range(0.0, 360.0, "degrees");
+/// Of one difference of colours. Weighted distances are exact to 1/4096 up to here.
+pub const COLOUR_WEIGHT: Range = range(0.0, 8.0, "");
+pub const SCORE_EXPONENT: Range = range(0.25, 16.0, "");
+pub const SCORE_THRESHOLD: Range = range(0.0, 1e30, "");
+pub const PETALS: Range = range(3.0, 64.0, "");
+/// Texels along one side of a base map.
+pub const BASE_MAP_SIDE: u32 = 8192;
+/// Texels of a base map: 64 MiB of them.
+pub const BASE_MAP_TEXELS: u64 = 1 << 24;
 pub const SHARE: Range = range(0.0, 1e6, "");
 pub const PLANT_HEIGHT: Range = range(0.001, 10.0, "m");
 pub const PLANT_WIDTH: Range = range(0.0001, 1.0, "m");

@@ -14,6 +14,10 @@ pub struct Terrain {
     /// wherever it lies.
     #[schemars(inner(range(min = limits::PLACE.min, max = limits::PLACE.max)))]
     pub centre_m: [f64; 2],
+    /// Base map of the whole ground: an 8-bit RGB or RGBA PNG (alpha is ignored) of the ground's
+    /// proportions; the first row lies at the smallest z. Looked up like every asset. Without one
+    /// the ground is coloured with patches of the three colours below.
+    pub base_map: Option<String>,
     /// Colours of the base map, linear RGB in 0…1: lush, dry, bare soil. A plant takes the colour
     /// of the ground under it.
     #[schemars(inner(range(min = limits::FRACTION.min, max = limits::FRACTION.max)))]
@@ -32,6 +36,7 @@ impl Default for Terrain {
         Self {
             ground: Ground::default(),
             centre_m: [0.0; 2],
+            base_map: None,
             lush_rgb: [0.105, 0.185, 0.045],
             dry_rgb: [0.25, 0.24, 0.095],
             soil_rgb: [0.13, 0.085, 0.045],

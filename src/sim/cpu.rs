@@ -335,7 +335,7 @@ fn touched_plants<R: Real>(
     let touches = touches_of(meadow, grown, tile);
     let mut found = Vec::new();
     for place in 0..field.grid.plants_per_tile() {
-        let Some(plant) = field.plant(&tile.anchor, tile.tile, place) else {
+        let Some(plant) = field.responding_plant(&tile.anchor, tile.tile, place) else {
             continue;
         };
         let reach = R::of_f32(plant.height_m);

@@ -4,6 +4,7 @@
 //! parts may touch it, how many sweeps a body needs) is decided once, on the CPU.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use crate::bodies::{Bodies, BodyError, Link};
 use crate::field::grid::ANCHOR_CELLS;
@@ -12,7 +13,7 @@ use crate::field::wind::FADE_S;
 use crate::field::{ActiveTiles, Field, FieldError, TileId, TileState, WindNow};
 use crate::scene::assets::Assets;
 use crate::scene::{Action, Event, Invalid, Scene, Wind, validate};
-use crate::terrain::TerrainError;
+use crate::terrain::{ColourMap, HeightGrid, TerrainError};
 
 use super::fault::Planted;
 use super::parts::{Parts, Tested, takes_whole_bodies};
@@ -90,6 +91,14 @@ pub enum MeadowError {
     Body(#[from] BodyError),
 }
 
+fn lay_out(ground: HeightGrid, scene: &Scene, assets: &Assets) -> Result<Field, MeadowError> {
+    if !scene.grass.grows_by_colour() {
+        return Ok(Field::new(ground, &scene.grass, &scene.solver)?);
+    }
+    let map = Arc::new(ColourMap::of(&scene.terrain, &ground, assets)?);
+    Ok(Field::on_map(ground, map, &scene.grass, &scene.solver)?)
+}
+
 impl Meadow {
     /// Lays out a scene.
     ///
@@ -100,7 +109,7 @@ impl Meadow {
         validate(&scene)?;
         let ground = crate::terrain::height_grid(&scene.terrain, assets)?;
         let bodies = Bodies::new(&scene, assets, &ground)?;
-        let field = Field::new(ground, &scene.grass, &scene.solver)?;
+        let field = lay_out(ground, &scene, assets)?;
         let slab = slab_bytes(field.grid.plants_per_tile(), scene.solver.segments).max(1);
         let slab_limit = (STATE_BUDGET_BYTES / slab).min(u64::from(field.grid.tile_count()));
         let mut script = scene.script.clone();

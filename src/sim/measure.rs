@@ -122,7 +122,7 @@ fn stand<R: Real>(
     let field = &meadow.field;
     let segments = field.table.segments as usize;
     let fading = Fading::new(meadow);
-    let plant = field.plant(&tile.anchor, tile.tile, place)?;
+    let plant = field.responding_plant(&tile.anchor, tile.tile, place)?;
     let (wind, nodes) = poses(field, &meadow.work, &fading, tile, &plant, slab, place);
     Some(Standing {
         place,

@@ -1,4 +1,4 @@
-//! Colour of the ground: patches of lush and dry grass, and bare soil on slopes.
+//! Colour of the ground: a base map, or patches of lush and dry grass, and bare soil on slopes.
 //!
 //! A plant takes the colour of the ground under it, so the patches are those of the meadow. They
 //! come from value noise at 8 m and less, at places that noise has wound, so that no tile, grid
@@ -7,9 +7,10 @@
 use rayon::prelude::*;
 
 use crate::scene::Terrain;
+use crate::scene::assets::{Assets, ColourPicture};
 
-use super::HeightGrid;
 use super::noise::value_noise;
+use super::{HeightGrid, TerrainError};
 
 /// Finest texel of a colour map, in metres: the finest noise is five times as long.
 const FINEST_TEXEL_M: f64 = 1.0 / 16.0;
@@ -30,9 +31,36 @@ pub struct ColourMap {
 }
 
 impl ColourMap {
-    /// The colours of the whole ground. A texel is 1/16 m, or larger where the ground is longer
-    /// than 64 m: then 1,024 texels span its longer side.
-    pub fn of(terrain: &Terrain, ground: &HeightGrid) -> Self {
+    /// The colours of the whole ground: its base map's, or patches.
+    ///
+    /// # Errors
+    /// A base map that is not among the assets.
+    pub fn of(
+        terrain: &Terrain,
+        ground: &HeightGrid,
+        assets: &Assets,
+    ) -> Result<Self, TerrainError> {
+        let Some(file) = &terrain.base_map else {
+            return Ok(Self::of_patches(terrain, ground));
+        };
+        let picture = assets.base_maps.get(file);
+        let picture = picture.ok_or_else(|| TerrainError::MissingBaseMap { file: file.clone() })?;
+        Ok(Self::of_picture(picture, ground))
+    }
+
+    fn of_picture(picture: &ColourPicture, ground: &HeightGrid) -> Self {
+        Self {
+            columns: picture.columns,
+            rows: picture.rows,
+            // Texels are square: the rows fit too, to half a texel.
+            texel_m: ground.size_m()[0] / f64::from(picture.columns),
+            rgba8: picture.rgba8.clone(),
+        }
+    }
+
+    /// Patches in the terrain's three colours. A texel is 1/16 m, or larger where the ground is
+    /// longer than 64 m: then 1,024 texels span its longer side.
+    pub fn of_patches(terrain: &Terrain, ground: &HeightGrid) -> Self {
         let size_m = ground.size_m();
         let longest_m = size_m[0].max(size_m[1]);
         let texel_m = FINEST_TEXEL_M.max(longest_m / f64::from(MOST_TEXELS));
@@ -182,7 +210,7 @@ mod tests {
     fn the_map_covers_the_ground_within_its_limit() {
         let map = |columns, rows, spacing_m| {
             let ground = HeightGrid::flat(columns, rows, spacing_m);
-            ColourMap::of(&Terrain::default(), &ground)
+            ColourMap::of_patches(&Terrain::default(), &ground)
         };
         let small = map(13, 7, 1.0);
         assert_eq!([small.columns, small.rows], [192, 96]);
@@ -194,10 +222,33 @@ mod tests {
     }
 
     #[test]
+    fn a_base_map_is_taken_as_it_is() {
+        let ground = HeightGrid::flat(9, 5, 2.0);
+        let mut assets = Assets::default();
+        let terrain = Terrain {
+            base_map: Some("map.png".into()),
+            ..Terrain::default()
+        };
+        assert!(
+            ColourMap::of(&terrain, &ground, &assets)
+                .is_err_and(|e| e.to_string().contains("map.png"))
+        );
+        let picture = ColourPicture {
+            columns: 4,
+            rows: 2,
+            rgba8: (0..32).collect(),
+        };
+        assets.base_maps.insert("map.png".into(), picture.clone());
+        let map = ColourMap::of(&terrain, &ground, &assets).expect("it is there");
+        assert_eq!((map.columns, map.rows, map.texel_m), (4, 2, 4.0));
+        assert_eq!(map.rgba8, picture.rgba8);
+    }
+
+    #[test]
     fn texels_hold_the_colour_of_their_middle_as_srgb() {
         let ground = HeightGrid::flat(5, 5, 1.0);
         let terrain = Terrain::default();
-        let map = ColourMap::of(&terrain, &ground);
+        let map = ColourMap::of_patches(&terrain, &ground);
         for (row, column) in [(0_u32, 0_u32), (10, 33), (63, 63)] {
             let at = |k: u32| -2.0 + (f64::from(k) + 0.5) * map.texel_m;
             let want = base_colour(&terrain, &ground, at(column), at(row));

@@ -27,6 +27,10 @@ type NamedCheck = Box<dyn Fn(&Device) -> Result<(), Failed> + Send>;
 const CHECKS: &[(&str, Check)] = &[
     ("random_words_are_equal", plants::random_words_are_equal),
     ("plants_are_equal", plants::plants_are_equal),
+    (
+        "kinds_by_colour_are_equal",
+        plants::kinds_by_colour_are_equal,
+    ),
     ("wind_poses_agree", plants::wind_poses_agree),
     (
         "poses_about_the_knee_agree",

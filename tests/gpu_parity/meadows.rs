@@ -1,12 +1,14 @@
 //! Small meadows for the trials.
 
 use std::f32::consts::TAU;
+use std::sync::Arc;
 
 use libtest_mimic::Failed;
+use sward::base::philox::philox2x32;
 use sward::field::Field;
-use sward::scene::{Collider, Grass, LoadedScene, Solver, Species, parse_scene};
+use sward::scene::{Collider, Grass, Likes, LoadedScene, Solver, Species, parse_scene};
 use sward::sim::Meadow;
-use sward::terrain::HeightGrid;
+use sward::terrain::{ColourMap, HeightGrid};
 
 /// A field on bumpy ground with two kinds of plants and a density that is no whole number.
 pub fn bumpy_field(solver: &Solver) -> Result<Field, Failed> {
@@ -34,6 +36,7 @@ pub fn leaning_field(solver: &Solver, lean_deg: [f32; 2]) -> Result<Field, Faile
                 ..Species::default()
             },
         ],
+        ..Grass::default()
     };
     Ok(Field::new(ground, &grass, solver)?)
 }
@@ -95,4 +98,48 @@ pub fn still() -> Result<Meadow, Failed> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/still.ron");
     let loaded = sward::scene::load_scene(path.as_ref(), &[])?;
     Ok(Meadow::new(loaded.scene, &loaded.assets)?)
+}
+
+/// The same in clusters, with kinds that grow where a base map of coloured noise has what they like.
+pub fn coloured_field(solver: &Solver, cluster: u32) -> Result<Field, Failed> {
+    let mut ground = HeightGrid::flat(14, 11, 1.0);
+    for (n, height) in ground.heights_m.iter_mut().enumerate() {
+        *height = 2.3 + 0.8 * (TAU * n as f32 * 0.137).sin();
+    }
+    let liking = |hsv, exponent, dwindle| Likes {
+        hsv,
+        exponent,
+        dwindle,
+        ..Likes::default()
+    };
+    let kind = |name: &str, likes, share| Species {
+        name: name.into(),
+        likes: Some(likes),
+        share,
+        ..Species::default()
+    };
+    let grass = Grass {
+        density_per_m2: 203.7,
+        seed: 78,
+        cluster,
+        species: vec![
+            kind("green", liking([110.0, 0.6, 0.4], 3.0, 0.7), 1.0),
+            kind("red", liking([350.0, 0.5, 0.6], 2.0, 0.0), 9.0),
+            kind("blue", liking([230.0, 0.9, 0.2], 5.5, 0.3), 2.0),
+        ],
+        bare: vec![liking([0.0, 0.0, 0.9], 4.0, 0.0)],
+    };
+    let (columns, rows) = (39, 30);
+    let texels = (0..columns * rows).flat_map(|n| {
+        let [a, _] = philox2x32([n, 3], 1, 7);
+        let [r, g, b, _] = a.to_le_bytes();
+        [r, g, b, 255]
+    });
+    let map = ColourMap {
+        columns,
+        rows,
+        texel_m: 1.0 / 3.0,
+        rgba8: texels.collect(),
+    };
+    Ok(Field::on_map(ground, Arc::new(map), &grass, solver)?)
 }

@@ -9,7 +9,7 @@ use sward::scene::{Solver, Wind};
 
 use super::Device;
 use super::compare::{Difference, distance, ensure, ulps};
-use super::meadows::{bumpy_field, leaning_field};
+use super::meadows::{bumpy_field, coloured_field, leaning_field};
 use super::probe::{self, ROWS};
 
 const WORDS: &str = r#"
@@ -191,6 +191,44 @@ pub fn plants_are_equal(device: &Device) -> Result<(), Failed> {
     drawn.check(2.0)?;
     azimuth.check(5e-7)?;
     heights.check(2.3e-6)
+}
+
+/// Kinds that follow from a base map: chosen in integers, so the same on both sides for every seed,
+/// bare ground included. A plant's vigour adds two roundings to its height and stiffness, and up to
+/// two more where the device fuses: 6 ulp.
+pub fn kinds_by_colour_are_equal(device: &Device) -> Result<(), Failed> {
+    let mut drawn = Difference::new("height and stiffness", "ulp");
+    let (mut kinds, mut bare) = ([0_u32; 3], 0_u32);
+    for (tile_m, cluster) in [(0.5, 1), (2.0, 1), (1.0, 4)] {
+        let solver = Solver {
+            tile_m,
+            ..Solver::default()
+        };
+        let field = coloured_field(&solver, cluster)?;
+        probed_field(device, field)?.each(|name, _, plant, rows| {
+            let want = plant.map(|plant| {
+                let [x, _, z] = plant.root_in_anchor;
+                [plant.species, plant.shade, x.to_bits(), z.to_bits()]
+            });
+            let grown = [rows[2][2], rows[2][3], rows[0][0], rows[0][2]];
+            let got = (rows[0][3] == 1).then_some(grown);
+            ensure(got == want, || format!("{name}: {got:x?} for {want:x?}"))?;
+            let Some(plant) = plant else {
+                bare += 1;
+                return Ok(());
+            };
+            kinds[plant.species as usize] += 1;
+            let float = |n: usize| f32::from_bits(rows[1][n]);
+            let off = ulps(plant.height_m, float(0)).max(ulps(plant.stiffness, float(2)));
+            drawn.add(f64::from(off), || name.to_owned());
+            Ok(())
+        })?;
+    }
+    println!("{kinds:?} plants of each kind, {bare} bare places");
+    ensure(kinds.iter().all(|&n| n > 1000) && bare > 1000, || {
+        format!("too few cases: {kinds:?}, {bare} bare")
+    })?;
+    drawn.check(6.0)
 }
 
 /// A segment's direction before it is made a unit vector is a sum of table entries of at most 1

@@ -224,6 +224,7 @@ fn meadow_of(setting: &Setting, species: Species, density_per_m2: f32) -> Result
         density_per_m2,
         seed: 3,
         species: vec![species],
+        ..Grass::default()
     };
     Ok(scene)
 }

@@ -61,6 +61,21 @@ impl Kernel {
         bindings: &[(u32, Access)],
         workgroup: u32,
     ) -> Result<Self, GpuError> {
+        Self::of_library(gpu, wgsl::PASSES, path, name, bindings, workgroup)
+    }
+
+    /// The same, of a file of another library of shaders.
+    ///
+    /// # Errors
+    /// The shader's, with file and line.
+    pub fn of_library(
+        gpu: &Gpu,
+        library: &'static [WgslFile],
+        path: &'static str,
+        name: &'static str,
+        bindings: &[(u32, Access)],
+        workgroup: u32,
+    ) -> Result<Self, GpuError> {
         let entries: Vec<_> = bindings.iter().map(|&b| layout_entry(b)).collect();
         let layout = gpu
             .device
@@ -72,7 +87,8 @@ impl Kernel {
             name: "WORKGROUP",
             value: workgroup.into(),
         };
-        let source = wgsl::assemble_with(pass_file(path)?, &[wgsl::SHARED], &[size])?;
+        let source =
+            wgsl::assemble_with(pass_file(library, path)?, &[library, wgsl::SHARED], &[size])?;
         let field = FieldBuffers::layout(gpu);
         Ok(Self {
             pipeline: gpu.compute_pipeline(&source, name, &[&field, &layout])?,
@@ -134,8 +150,11 @@ fn layout_entry((binding, access): (u32, Access)) -> wgpu::BindGroupLayoutEntry 
     }
 }
 
-fn pass_file(path: &'static str) -> Result<&'static WgslFile, GpuError> {
-    wgsl::PASSES
+fn pass_file(
+    library: &'static [WgslFile],
+    path: &'static str,
+) -> Result<&'static WgslFile, GpuError> {
+    library
         .iter()
         .find(|file| file.path == path)
         .ok_or_else(|| GpuError::Rejected {

@@ -1,101 +1,37 @@
 //! 16-bit grey PNG pictures as heights.
 
-use std::io::Cursor;
-
-use png::{BitDepth, ColorType, Decoder, Limits};
+use png::{BitDepth, ColorType};
 
 use super::HeightMap;
+use super::picture::{Wanted, unpack};
 use crate::scene::error::AssetError;
 use crate::scene::limits::{HEIGHT_MAP_SIDE, HEIGHT_SAMPLES};
 
-/// Bytes the PNG reader may take for itself beside the picture: a few rows and the metadata.
-const READER_BYTES: usize = 16 << 20;
-
-/// Most bytes one packed byte can become: DEFLATE repeats at most 258 bytes for two bits.
-const MOST_UNPACKED: u64 = 1032;
+const HEIGHTS: Wanted = Wanted {
+    formats: &[(ColorType::Grayscale, BitDepth::Sixteen)],
+    as_text: "a 16-bit grey PNG without transparency",
+    side: HEIGHT_MAP_SIDE,
+    pixels: HEIGHT_SAMPLES,
+    pixel_name: "height samples",
+};
 
 /// Reads a height map; its size is checked before it is unpacked.
 ///
 /// # Errors
 /// No PNG, another colour type or depth, too large, or damaged.
 pub(super) fn read(file: &str, bytes: &[u8]) -> Result<HeightMap, AssetError> {
-    let damaged = |reason: String| AssetError::Damaged {
-        file: file.to_owned(),
-        reason,
-    };
-    let limits = Limits {
-        bytes: READER_BYTES,
-    };
-    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
-    // Texts and colour profiles may be packed a thousandfold.
-    decoder.set_ignore_text_chunk(true);
-    decoder.set_ignore_iccp_chunk(true);
-    let header = decoder
-        .read_header_info()
-        .map_err(|e| damaged(format!("it is no valid PNG: {e}")))?;
-    let (columns, rows) = (header.width, header.height);
-    if (header.color_type, header.bit_depth) != (ColorType::Grayscale, BitDepth::Sixteen) {
-        return Err(AssetError::Format {
-            file: file.to_owned(),
-            found: format!(
-                "a {}-bit {:?} PNG",
-                header.bit_depth as u8, header.color_type
-            ),
-            wanted: "a 16-bit grey PNG without transparency",
-        });
-    }
-    check_size(file, columns, rows)?;
-    if 2 * u64::from(columns) * u64::from(rows) > MOST_UNPACKED * bytes.len() as u64 {
-        let has = bytes.len();
-        return Err(damaged(format!(
-            "its {has} bytes cannot hold {columns} by {rows} samples"
-        )));
-    }
-    let unpack = |e| damaged(format!("it cannot be unpacked: {e}"));
-    let mut reader = decoder.read_info().map_err(unpack)?;
-    let mut packed = vec![0; columns as usize * rows as usize * 2];
-    let frame = reader.next_frame(&mut packed).map_err(unpack)?;
-    if (frame.width, frame.height) != (columns, rows) {
-        return Err(damaged(
-            "its first picture is smaller than its header says".to_owned(),
-        ));
-    }
-    let (pairs, _) = packed.as_chunks::<2>();
+    let picture = unpack(file, bytes, &HEIGHTS)?;
+    let (pairs, _) = picture.bytes.as_chunks::<2>();
     Ok(HeightMap {
-        columns,
-        rows,
+        columns: picture.columns,
+        rows: picture.rows,
         samples: pairs.iter().map(|&p| u16::from_be_bytes(p)).collect(),
     })
 }
 
-fn check_size(file: &str, columns: u32, rows: u32) -> Result<(), AssetError> {
-    let over = |count, what, limit| AssetError::OverBudget {
-        file: file.to_owned(),
-        count,
-        what,
-        limit,
-    };
-    for (side, what) in [(columns, "columns"), (rows, "rows")] {
-        if side > HEIGHT_MAP_SIDE {
-            return Err(over(side.into(), what, HEIGHT_MAP_SIDE.into()));
-        }
-        if side < 2 {
-            return Err(AssetError::Format {
-                file: file.to_owned(),
-                found: format!("{columns} by {rows} samples"),
-                wanted: "a picture of at least 2 by 2",
-            });
-        }
-    }
-    let samples = u64::from(columns) * u64::from(rows);
-    if samples > HEIGHT_SAMPLES {
-        return Err(over(samples, "height samples", HEIGHT_SAMPLES));
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::picture::check_size;
     use super::*;
 
     fn png(color: ColorType, depth: BitDepth, size: [u32; 2], data: &[u8]) -> Vec<u8> {
@@ -163,9 +99,9 @@ mod tests {
             .expect_err("no such picture")
             .to_string();
         assert!(text.contains("cannot hold 4096 by 4096"), "{text}");
-        assert!(check_size("h.png", 16_385, 2).is_err());
-        assert!(check_size("h.png", 16_384, 16_384).is_err());
-        assert!(check_size("h.png", 1, 100).is_err());
-        assert!(check_size("h.png", 4096, 4096).is_ok());
+        assert!(check_size("h.png", 16_385, 2, &HEIGHTS).is_err());
+        assert!(check_size("h.png", 16_384, 16_384, &HEIGHTS).is_err());
+        assert!(check_size("h.png", 1, 100, &HEIGHTS).is_err());
+        assert!(check_size("h.png", 4096, 4096, &HEIGHTS).is_ok());
     }
 }

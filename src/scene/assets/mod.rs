@@ -1,11 +1,13 @@
 //! Files a scene names, read and checked once.
 
 mod base64;
+mod base_map;
 mod gltf;
 mod gltf_buffers;
 mod height_map;
 mod noted;
 mod obj;
+mod picture;
 mod solid;
 mod source;
 
@@ -23,6 +25,7 @@ use super::{Action, Body, Ground, Scene, Shape};
 pub struct Assets {
     pub meshes: BTreeMap<String, TriangleMesh>,
     pub height_maps: BTreeMap<String, HeightMap>,
+    pub base_maps: BTreeMap<String, ColourPicture>,
     /// A hash of the bytes of every file that was read, those named by other assets included.
     pub file_hashes: BTreeMap<String, u64>,
 }
@@ -41,6 +44,15 @@ pub struct HeightMap {
     pub columns: u32,
     pub rows: u32,
     pub samples: Vec<u16>,
+}
+
+/// A colour picture; the first row lies at the smallest z.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ColourPicture {
+    pub columns: u32,
+    pub rows: u32,
+    /// Four bytes a texel: red, green and blue encoded as sRGB, and 255.
+    pub rgba8: Vec<u8>,
 }
 
 /// Every body of a scene, spawned ones included, with its key.
@@ -69,6 +81,11 @@ pub(super) fn read_assets(
         let map = map.map_err(|e| ("terrain.ground.file".to_owned(), e))?;
         assets.height_maps.insert(file.clone(), map);
     }
+    if let Some(file) = &scene.terrain.base_map {
+        let map = read_base_map(file, source);
+        let map = map.map_err(|e| ("terrain.base_map".to_owned(), e))?;
+        assets.base_maps.insert(file.clone(), map);
+    }
     for (key, body) in bodies_with_keys(scene) {
         let Shape::Mesh { file, .. } = &body.shape else {
             continue;
@@ -76,7 +93,9 @@ pub(super) fn read_assets(
         if assets.meshes.contains_key(file) {
             continue;
         }
-        let mesh = if assets.meshes.len() + assets.height_maps.len() < ASSET_FILES {
+        let mesh = if assets.meshes.len() + assets.height_maps.len() + assets.base_maps.len()
+            < ASSET_FILES
+        {
             read_mesh(file, source)
         } else {
             Err(AssetError::OverBudget {
@@ -121,6 +140,15 @@ pub fn read_mesh(file: &str, source: &dyn AssetSource) -> Result<TriangleMesh, A
 pub fn read_height_map(file: &str, source: &dyn AssetSource) -> Result<HeightMap, AssetError> {
     let bytes = source.read(file, ASSET_BYTES)?;
     guarded(file, || height_map::read(file, &bytes))
+}
+
+/// Reads an 8-bit colour PNG.
+///
+/// # Errors
+/// A file that cannot be found or read, is of another format, too large or damaged.
+pub fn read_base_map(file: &str, source: &dyn AssetSource) -> Result<ColourPicture, AssetError> {
+    let bytes = source.read(file, ASSET_BYTES)?;
+    guarded(file, || base_map::read(file, &bytes))
 }
 
 fn ending_of(file: &str) -> String {

@@ -1,7 +1,7 @@
 //! Ground, plants, wind and solver settings.
 
 use super::check::{Check, Key, at_most, name, ordered, within, within_each};
-use crate::scene::{Grass, Ground, Solver, Species, Terrain, Wind, limits};
+use crate::scene::{Form, Grass, Ground, Likes, Solver, Species, Terrain, Wind, limits};
 
 pub(super) fn terrain(key: &Key, terrain: &Terrain) -> Check {
     ground(&key.field("ground"), &terrain.ground)?;
@@ -59,6 +59,8 @@ pub(super) fn grass(key: &Key, grass: &Grass) -> Check {
         density,
         &limits::PLANT_DENSITY,
     )?;
+    within(&key.field("cluster"), grass.cluster, &limits::CLUSTER)?;
+    let bare = key.field("bare");
     let key = key.field("species");
     at_most(&key, grass.species.len(), limits::SPECIES, "species")?;
     for (i, one) in grass.species.iter().enumerate() {
@@ -68,11 +70,77 @@ pub(super) fn grass(key: &Key, grass: &Grass) -> Check {
     if !grass.species.is_empty() && shares <= 0.0 {
         return key.fail("has no share above 0; give at least one species a positive share");
     }
+    tastes(&key, &bare, grass)
+}
+
+/// Either every kind says what ground it likes, or none does.
+fn tastes(species: &Key, bare: &Key, grass: &Grass) -> Check {
+    at_most(bare, grass.bare.len(), limits::BARE_GROUNDS, "bare grounds")?;
+    for (i, one) in grass.bare.iter().enumerate() {
+        likes(&bare.nth(i), one)?;
+    }
+    if !grass.grows_by_colour() {
+        if grass.bare.is_empty() {
+            return Ok(());
+        }
+        return bare
+            .clone()
+            .fail("is given, but no species has `likes`; give every species one");
+    }
+    for (i, one) in grass.species.iter().enumerate() {
+        if one.likes.is_none() {
+            let what = "is missing, but another species has one; give it to all or to none";
+            return species.nth(i).field("likes").fail(what);
+        }
+        if one.share <= 0.0 {
+            let what = "is 0, and a score of 0 is never chosen; leave the species out";
+            return species.nth(i).field("share").fail(what);
+        }
+    }
     Ok(())
+}
+
+fn likes(key: &Key, likes: &Likes) -> Check {
+    let ranges = [&limits::HUE, &limits::FRACTION, &limits::FRACTION];
+    for (i, (&value, range)) in likes.hsv.iter().zip(ranges).enumerate() {
+        within(&key.field("hsv").nth(i), value, range)?;
+    }
+    let weights = key.field("weights");
+    within_each(&weights, &likes.weights, &limits::COLOUR_WEIGHT)?;
+    if likes.weights.iter().all(|&w| w < 1.0 / 4096.0) {
+        let what = "are all 0; a colour differs from others by at least one weight of 1/4096";
+        return weights.fail(what);
+    }
+    let exponent = key.field("exponent");
+    within(&exponent, likes.exponent, &limits::SCORE_EXPONENT)?;
+    let threshold = key.field("threshold");
+    within(&threshold, likes.threshold, &limits::SCORE_THRESHOLD)?;
+    within(&key.field("dwindle"), likes.dwindle, &limits::FRACTION)
+}
+
+fn form(key: &Key, form: &Form) -> Check {
+    match form {
+        Form::Blade | Form::Leaf | Form::Twig | Form::Gravel => Ok(()),
+        Form::Flower {
+            head_m,
+            petals,
+            petal_rgb,
+            centre_rgb,
+        } => {
+            within(&key.field("head_m"), *head_m, &limits::PLANT_WIDTH)?;
+            within(&key.field("petals"), *petals, &limits::PETALS)?;
+            within_each(&key.field("petal_rgb"), petal_rgb, &limits::FRACTION)?;
+            within_each(&key.field("centre_rgb"), centre_rgb, &limits::FRACTION)
+        }
+    }
 }
 
 fn species(key: &Key, species: &Species) -> Check {
     name(&key.field("name"), &species.name)?;
+    form(&key.field("form"), &species.form)?;
+    if let Some(taste) = &species.likes {
+        likes(&key.field("likes"), taste)?;
+    }
     within(&key.field("share"), species.share, &limits::SHARE)?;
     ordered(
         &key.field("height_m"),

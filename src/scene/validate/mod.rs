@@ -57,6 +57,7 @@ pub fn validate_assets(scene: &Scene, assets: &Assets) -> Result<(), Invalid> {
         ground => ground_samples(ground),
     };
     if let Some(samples) = samples {
+        base_map(scene, assets, samples)?;
         let field = size(scene, samples)?;
         expect::on_the_ground(&Key::root().field("expect"), scene, &field)?;
     }
@@ -76,6 +77,29 @@ pub fn validate_assets(scene: &Scene, assets: &Assets) -> Result<(), Invalid> {
                 });
             }
         }
+    }
+    Ok(())
+}
+
+/// A base map covers the ground with square texels: its sides have the ground's proportions, to
+/// half a texel.
+fn base_map(scene: &Scene, assets: &Assets, samples: [u64; 2]) -> Check {
+    let file = scene.terrain.base_map.as_ref();
+    let Some(map) = file.and_then(|file| assets.base_maps.get(file)) else {
+        return Ok(());
+    };
+    let [wide, deep] = samples.map(|n| n.saturating_sub(1) as f64);
+    let rows = f64::from(map.columns) * deep / wide;
+    if (rows - f64::from(map.rows)).abs() > 0.5 {
+        let what = format!(
+            "has {} by {} texels, but the ground is {wide} by {deep} squares; for {} columns it \
+             needs {} rows",
+            map.columns,
+            map.rows,
+            map.columns,
+            rows.round().max(2.0)
+        );
+        return Key::root().field("terrain").field("base_map").fail(what);
     }
     Ok(())
 }

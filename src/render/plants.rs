@@ -1,0 +1,395 @@
+//! Plants of every form: the second of the two stages of P15 section 3.5. Each form has a file and
+//! a shader of its own, and is drawn indirectly from the ranges that `sort_plants.rs` makes.
+
+use wgpu::{BufferUsages, ShaderStages};
+
+use crate::field::plant::MAX_SPECIES;
+use crate::field::{Field, TileId, WindNow};
+use crate::gpu::field_data::FieldBuffers;
+use crate::gpu::passes::Recording;
+use crate::gpu::{Buffer, Gpu, GpuError, PassTimer};
+use crate::gpu_struct;
+use crate::scene::Form;
+
+use super::blade_tiles::{BladeDetail, DrawnTile, Size, drawn_tiles, most_on_triangle};
+use super::camera::View;
+use super::ground_look::GroundTexture;
+use super::pipeline::{Drawing, READ_STORAGE, UNIFORM, bind_group, group_layout};
+use super::plant_form::{BUCKETS, DETAILS, FORM_BLADE, FORMS, form_index};
+use super::sort_plants::{DrawArgs, PlantSort, SortInput};
+use super::view_group::ViewGroups;
+
+/// The plants as a whole, as far as the light is concerned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Canopy {
+    /// Height of the tallest kind, 0 where nothing grows.
+    pub(super) height_m: f32,
+    /// Share of the ground's sky that plants hide, 0 to 1.
+    pub(super) cover: f32,
+}
+
+impl Canopy {
+    pub(super) fn of(field: &Field) -> Self {
+        if field.is_bare() {
+            return Self {
+                height_m: 0.0,
+                cover: 0.0,
+            };
+        }
+        let kinds = &field.seeds.species;
+        let mean = |[low, span]: [f32; 2]| low + 0.5 * span;
+        // What lies on the ground hides none of its sky.
+        let stands = |form: &Form| !matches!(form, Form::Twig | Form::Gravel);
+        let area_m2: f32 = kinds
+            .iter()
+            .filter(|kind| stands(&kind.form))
+            .map(|kind| mean(kind.height_m) * mean(kind.width_m))
+            .sum::<f32>()
+            / kinds.len() as f32;
+        let cell_m2 = field.grid.cell_m * field.grid.cell_m;
+        // Companions are thinner and shorter: two of them hide about as much as a plant.
+        let per_m2 = 2.0 * field.grid.plants_per_triangle() as f32 / cell_m2 * 2.0;
+        Self {
+            height_m: field.reach_m,
+            // Beer's law for leaves that stand at random angles.
+            cover: 1.0 - (-area_m2 * per_m2).exp(),
+        }
+    }
+}
+
+gpu_struct! {
+    pub(super) struct Bucket {
+        stride: u32,
+        steps: u32,
+        spare: [u32; 2],
+    }
+}
+
+gpu_struct! {
+    pub(super) struct FormUniform {
+        petal_rgb: [f32; 3],
+        petals: f32,
+        centre_rgb: [f32; 3],
+        head_m: f32,
+    }
+}
+
+gpu_struct! {
+    pub(super) struct PlantLook {
+        map_m: [f32; 2],
+        cover: f32,
+        reach_m: f32,
+        samples: u32,
+        spare_a: u32,
+        spare_b: [u32; 2],
+        buckets: [Bucket; BUCKETS as usize],
+        forms: [FormUniform; MAX_SPECIES],
+    }
+}
+
+/// What grows, and what of it is awake.
+#[derive(Clone, Copy, Debug)]
+pub struct BladesInput<'a> {
+    pub field: &'a Field,
+    pub wind: &'a WindNow,
+    /// Active tiles with their slabs, in the order of their ids.
+    pub active: &'a [(TileId, u32)],
+    /// Nodes of the active tiles' plants in their anchors, as
+    /// [`GpuGrass::drawn`](crate::gpu::GpuGrass::drawn) or [`ActiveNodes`](super::ActiveNodes)
+    /// lays them out: a row per node, root first.
+    pub active_nodes: &'a Buffer<[f32; 4]>,
+    pub detail: BladeDetail,
+}
+
+/// Counts of a frame, for panels and benches: upper bounds, since the device leaves out what is
+/// bare or out of sight, and tells nobody.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct BladeCounts {
+    pub tiles: u64,
+    pub blades: u64,
+    pub triangles: u64,
+}
+
+impl BladeCounts {
+    fn add(&mut self, drawn: &DrawnTile, segments: u32) {
+        let form = &FORMS[FORM_BLADE as usize];
+        let [_, steps] = form.steps(drawn.detail, segments);
+        let blades = u64::from(drawn.ranks);
+        self.tiles += 1;
+        self.blades += blades;
+        self.triangles += blades * u64::from(form.triangles((form.vertices)(steps)));
+    }
+}
+
+/// Plants of one form that a frame drew, as the device counted them.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct DrawnPlants {
+    /// Name of the form's shader.
+    pub form: &'static str,
+    pub plants: u64,
+    pub triangles: u64,
+}
+
+/// What belongs to one field.
+#[derive(Debug)]
+struct PlantScene {
+    buffers: FieldBuffers,
+    colour: GroundTexture,
+    cover: f32,
+    /// Form of each kind.
+    kinds: Vec<Form>,
+    group: Option<(wgpu::Buffer, wgpu::BindGroup)>,
+}
+
+/// Draws the plants.
+#[derive(Debug)]
+pub(super) struct PlantsLayer {
+    /// One per form.
+    pipelines: Vec<wgpu::RenderPipeline>,
+    layout: wgpu::BindGroupLayout,
+    look: Buffer<PlantLook>,
+    sort: PlantSort,
+    scene: Option<PlantScene>,
+    /// Forms and details that this frame may hold.
+    used: Vec<u32>,
+    pub(super) counts: BladeCounts,
+    samples: u32,
+}
+
+impl PlantsLayer {
+    pub(super) fn new(gpu: &Gpu, groups: &ViewGroups, samples: u32) -> Result<Self, GpuError> {
+        let (vertex, fragment) = (ShaderStages::VERTEX, ShaderStages::FRAGMENT);
+        let texture = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let layout = group_layout(
+            gpu,
+            "plants",
+            &[
+                (vertex | fragment, UNIFORM),
+                (vertex, READ_STORAGE),
+                (vertex, READ_STORAGE),
+                (vertex, texture),
+                (vertex, sampler),
+                (vertex, READ_STORAGE),
+                (vertex, READ_STORAGE),
+            ],
+        );
+        let field_layout = FieldBuffers::layout(gpu);
+        let mut used = groups.lit(&layout);
+        used[0] = Some(&field_layout);
+        let pipelines = FORMS.iter().map(|form| {
+            Drawing {
+                shader: form.shader,
+                vertex: form.vertex,
+                fragment: form.fragment,
+                groups: used,
+                topology: form.topology,
+                samples,
+                alpha_to_coverage: samples > 1,
+                ..Drawing::default()
+            }
+            .pipeline(gpu)
+        });
+        Ok(Self {
+            pipelines: pipelines.collect::<Result<_, _>>()?,
+            look: Buffer::new(gpu, "plant look", 1, BufferUsages::UNIFORM)?,
+            sort: PlantSort::new(gpu)?,
+            layout,
+            scene: None,
+            used: Vec::new(),
+            counts: BladeCounts::default(),
+            samples,
+        })
+    }
+
+    /// Takes a field in place of the old one.
+    pub(super) fn set_field(
+        &mut self,
+        field: &Field,
+        buffers: FieldBuffers,
+        colour: &GroundTexture,
+    ) {
+        self.clear();
+        self.scene = (!field.is_bare()).then(|| PlantScene {
+            buffers,
+            colour: colour.clone(),
+            cover: Canopy::of(field).cover,
+            kinds: field.seeds.species.iter().map(|kind| kind.form).collect(),
+            group: None,
+        });
+    }
+
+    /// Leaves the plants out of the next frame.
+    pub(super) fn clear(&mut self) {
+        self.sort.clear();
+        self.used.clear();
+        self.counts = BladeCounts::default();
+    }
+
+    /// Lists what this frame may draw.
+    pub(super) fn write(
+        &mut self,
+        gpu: &Gpu,
+        view: &View,
+        picture: Size,
+        input: &BladesInput<'_>,
+    ) -> Result<(), GpuError> {
+        self.clear();
+        let Some(scene) = &mut self.scene else {
+            return Ok(());
+        };
+        scene.buffers.set_wind(gpu, input.wind)?;
+        let segments = input.field.table.segments;
+        let look = plant_look(scene, input.detail.reach_m, segments, self.samples);
+        self.look.write(gpu, 0, &[look])?;
+        let forms: Vec<u32> = scene.kinds.iter().map(form_index).collect();
+        let tiles = drawn_tiles(input, view, picture);
+        for drawn in &tiles {
+            self.counts.add(drawn, segments);
+        }
+        let used = |bucket: &u32| {
+            let is_near = |tile: &DrawnTile| tile.detail == bucket % DETAILS;
+            forms.contains(&(bucket / DETAILS)) && tiles.iter().any(is_near)
+        };
+        self.used = (0..BUCKETS).filter(used).collect();
+        let grown = self.sort.write(
+            gpu,
+            &SortInput {
+                view,
+                picture,
+                detail: input.detail,
+                most: most_on_triangle(input) as f32,
+                forms: &forms,
+                segments,
+                tiles: &tiles,
+            },
+        )?;
+        let known = scene.group.as_ref().map(|(nodes, _)| nodes);
+        if grown || known != Some(&input.active_nodes.raw) {
+            let group = bind_group(
+                gpu,
+                "plants",
+                &self.layout,
+                &[
+                    self.look.binding(),
+                    self.sort.tiles.binding(),
+                    input.active_nodes.binding(),
+                    wgpu::BindingResource::TextureView(&scene.colour.view),
+                    wgpu::BindingResource::Sampler(&scene.colour.sampler),
+                    self.sort.sorted.binding(),
+                    self.sort.totals.binding(),
+                ],
+            );
+            scene.group = Some((input.active_nodes.raw.clone(), group));
+        }
+        Ok(())
+    }
+
+    /// Records the first stage.
+    pub(super) fn sort(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        timer: &mut PassTimer,
+    ) {
+        if let Some(scene) = &self.scene {
+            let mut into = Recording {
+                encoder,
+                timer,
+                field: &scene.buffers,
+            };
+            self.sort.record(gpu, &mut into);
+        }
+    }
+
+    /// Records the second stage.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let Some(scene) = &self.scene else {
+            return;
+        };
+        let Some((_, group)) = &scene.group else {
+            return;
+        };
+        pass.set_bind_group(0, &scene.buffers.bind_group, &[]);
+        pass.set_bind_group(3, group, &[]);
+        for of_form in self.used.chunk_by(|a, b| a / DETAILS == b / DETAILS) {
+            pass.set_pipeline(&self.pipelines[(of_form[0] / DETAILS) as usize]);
+            for &bucket in of_form {
+                let offset = u64::from(bucket) * size_of::<DrawArgs>() as u64;
+                pass.draw_indirect(&self.sort.draws.raw, offset);
+            }
+        }
+    }
+
+    /// Reads back what the last frame drew, by form. Waits for the device: for tests and benches.
+    ///
+    /// # Errors
+    /// The device's.
+    pub(super) fn read_counts(&self, gpu: &Gpu) -> Result<Vec<DrawnPlants>, GpuError> {
+        if self.sort.is_empty() {
+            return Ok(Vec::new());
+        }
+        let draws = self.sort.draws.read(gpu, BUCKETS as usize)?;
+        let by_form = draws.chunks_exact(DETAILS as usize).zip(&FORMS);
+        Ok(by_form
+            .map(|(draws, form)| DrawnPlants {
+                form: form.shader,
+                plants: draws.iter().map(|draw| u64::from(draw.instances)).sum(),
+                triangles: draws
+                    .iter()
+                    .map(|draw| {
+                        u64::from(draw.instances) * u64::from(form.triangles(draw.vertices))
+                    })
+                    .sum(),
+            })
+            .collect())
+    }
+}
+
+fn plant_look(scene: &PlantScene, reach_m: f32, segments: u32, samples: u32) -> PlantLook {
+    let mut buckets = [Bucket {
+        stride: 1,
+        steps: 1,
+        spare: [0; 2],
+    }; BUCKETS as usize];
+    for (place, bucket) in buckets.iter_mut().zip(0..) {
+        let form = &FORMS[(bucket / DETAILS) as usize];
+        [place.stride, place.steps] = form.steps(bucket % DETAILS, segments);
+    }
+    let mut forms = [FormUniform {
+        petal_rgb: [0.0; 3],
+        petals: 1.0,
+        centre_rgb: [0.0; 3],
+        head_m: 0.0,
+    }; MAX_SPECIES];
+    for (place, form) in forms.iter_mut().zip(&scene.kinds) {
+        if let Form::Flower {
+            head_m,
+            petals,
+            petal_rgb,
+            centre_rgb,
+        } = *form
+        {
+            *place = FormUniform {
+                petal_rgb,
+                petals: petals as f32,
+                centre_rgb,
+                head_m,
+            };
+        }
+    }
+    PlantLook {
+        map_m: scene.colour.size_m,
+        cover: scene.cover,
+        reach_m,
+        samples,
+        spare_a: 0,
+        spare_b: [0; 2],
+        buckets,
+        forms,
+    }
+}
