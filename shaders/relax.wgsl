@@ -1,7 +1,8 @@
 // Relax: what a touched plant does within one sub-step. Twin: src/sim/relax.rs.
 //
 // One invocation per touched plant, sweeps and rounds in sequence, so no two write the same place. A
-// later turn goes on from the offsets that the one before has left.
+// later turn goes on from the nodes that the one before has left in the place of their offsets, so
+// that turns change no bit.
 // Pushing out and laying out ask the bodies at one place only, in `meet_bodies`: software drivers
 // pay for every inlined copy of that.
 #import "shared/contact.wgsl"
@@ -311,16 +312,17 @@ fn relax(
     for (var j = 0u; j < field.segments; j++) {
         let stored = state[row + 1u + j];
         walk_up(&walk, plant, j, bitcast<vec3f>(stored.xyz));
-        nodes[j + 1u] = walk.node;
+        nodes[j + 1u] = select(walk.node, bitcast<vec3f>(stored.xyz), done > 0u);
         wind_nodes[j + 1u] = walk.wind;
         faces[j] = select(stored.w, 0u, is_back);
     }
     let rounds = respond(tile, plant.height_m, done, entry.sweeps, walk.length);
     atomicMax(&touched[1], rounds);
+    let is_last = done + tick.relax_sweeps >= entry.sweeps;
     var stored = 0u;
     for (var j = 0u; j < field.segments; j++) {
-        let offset = nodes[j + 1u] - wind_nodes[j + 1u];
-        state[row + 1u + j] = vec4u(bitcast<vec3u>(offset), faces[j]);
+        let kept = nodes[j + 1u] - select(vec3f(0.0), wind_nodes[j + 1u], is_last);
+        state[row + 1u + j] = vec4u(bitcast<vec3u>(kept), faces[j]);
         stored++;
     }
     // Once a driver's limit is reached every loop ends after its first round, this one too.
