@@ -34,9 +34,8 @@ fn flower_vertex(
 }
 
 fn on_stem(drawn: DrawnPlant, corner: u32) -> FlowerPoint {
-    let of_quad = corner % 6u;
-    let is_upper = of_quad == 2u || of_quad == 3u || of_quad == 5u;
-    let is_right = of_quad == 1u || of_quad == 4u || of_quad == 5u;
+    let is_upper = is_upper_corner(corner);
+    let is_right = is_right_corner(corner);
     let step = corner / 6u + select(0u, 1u, is_upper);
     let node = min(step * drawn.bucket.stride, field.segments);
     let pose = drawn_node(drawn, node);

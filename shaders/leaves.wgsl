@@ -22,9 +22,8 @@ fn leaf_vertex(
 ) -> LeafPoint {
     let drawn = drawn_plant(vertex, instance);
     let corner = vertex % BUCKET_VERTICES;
-    let of_quad = corner % 6u;
-    let is_upper = of_quad == 2u || of_quad == 3u || of_quad == 5u;
-    let is_outer = of_quad == 1u || of_quad == 4u || of_quad == 5u;
+    let is_upper = is_upper_corner(corner);
+    let is_outer = is_right_corner(corner);
     let side = select(-1.0, 1.0, (corner / 6u) % 2u == 1u);
     let step = corner / 12u + select(0u, 1u, is_upper);
     let node = min(step * drawn.bucket.stride, field.segments);

@@ -41,7 +41,7 @@ fn ground_below(tile: TileRecord, node: vec3f) -> f32 {
 // True for a node that a body presses onto the ground: its way out leads below it, and into it
 // rather than along.
 fn is_pressed(tile: TileRecord, out: vec3f, normal: vec3f) -> bool {
-    let plane = ground_plane_in_anchor(tile, out.x, out.z);
+    let plane = plane_below(tile, out);
     let into = dot(plane.slope, normal.xz) - normal.y;
     return into > STICKS * sqrt(1.0 + dot(plane.slope, plane.slope)) && out.y < plane.height;
 }

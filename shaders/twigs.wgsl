@@ -28,9 +28,8 @@ fn twig_vertex(
 ) -> TwigPoint {
     let drawn = drawn_plant(vertex, instance);
     let corner = vertex % BUCKET_VERTICES;
-    let of_quad = corner % 6u;
-    let is_upper = of_quad == 2u || of_quad == 3u || of_quad == 5u;
-    let is_right = of_quad == 1u || of_quad == 4u || of_quad == 5u;
+    let is_upper = is_upper_corner(corner);
+    let is_right = is_right_corner(corner);
     let side = (corner / 6u) % SIDES + select(0u, 1u, is_right);
     let part = corner / (6u * SIDES);
     var point: StickPoint;

@@ -88,6 +88,17 @@ fn drawn_plant(vertex: u32, instance: u32) -> DrawnPlant {
     );
 }
 
+// Whether a corner of a quad of two triangles is one of its upper two, or of those on its right.
+fn is_upper_corner(corner: u32) -> bool {
+    let of_quad = corner % 6u;
+    return of_quad == 2u || of_quad == 3u || of_quad == 5u;
+}
+
+fn is_right_corner(corner: u32) -> bool {
+    let of_quad = corner % 6u;
+    return of_quad == 1u || of_quad == 4u || of_quad == 5u;
+}
+
 fn shade_byte(plant: Plant, index: u32) -> f32 {
     return f32((plant.shade >> (8u * index)) & 0xffu) * (1.0 / 255.0);
 }

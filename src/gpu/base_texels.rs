@@ -1,5 +1,6 @@
 //! The base map's bytes on the device, for the choice of kinds in integers.
 
+use super::texture::rgba8_texture;
 use super::{Gpu, GpuError};
 use crate::field::Field;
 
@@ -19,34 +20,12 @@ pub(super) fn base_texels(gpu: &Gpu, field: &Field) -> Result<wgpu::TextureView,
             limit_name: "max_texture_dimension_2d",
         });
     }
-    let size = wgpu::Extent3d {
-        width,
-        height,
-        depth_or_array_layers: 1,
-    };
-    let texture = gpu.guarded("the base map's texels", || {
-        gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("base map's texels"),
-            size,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8Uint,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        })
-    })?;
-    if let Some(map) = map {
-        gpu.queue.write_texture(
-            texture.as_image_copy(),
-            &map.rgba8,
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(width * 4),
-                rows_per_image: None,
-            },
-            size,
-        );
-    }
+    let texture = rgba8_texture(
+        gpu,
+        "the base map's texels",
+        wgpu::TextureFormat::Rgba8Uint,
+        [width, height],
+        map.map(|map| &map.rgba8[..]),
+    )?;
     Ok(texture.create_view(&Default::default()))
 }

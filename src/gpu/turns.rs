@@ -14,7 +14,7 @@ use crate::sim::Meadow;
 use crate::sim::fault::Fault;
 use crate::sim::parts::Tested;
 use crate::sim::relax::SPRING_TRIES;
-use crate::sim::work::{Contact, TileWork};
+use crate::sim::work::Contact;
 
 /// Most times that all loops of a dispatch together go round: less than half the driver's limit, since
 /// the count leaves out what drivers add (blades of 16 segments were cut short below 60,000), and the
@@ -90,12 +90,8 @@ fn loops_per_node(meadow: &Meadow) -> u64 {
             u64::from(part.grown.feature_count()) + 1 + OTHER_LOOPS
         }
     };
-    let contacts_of = |tile: &TileWork| tile.contacts.start as usize..tile.contacts.end as usize;
     let tiles = meadow.work.tiles.iter();
-    let sums = tiles.map(|tile| {
-        let contacts = &meadow.work.contacts[contacts_of(tile)];
-        contacts.iter().map(of_part).sum()
-    });
+    let sums = tiles.map(|tile| meadow.work.contacts_of(tile).iter().map(of_part).sum());
     sums.max().unwrap_or(0)
 }
 

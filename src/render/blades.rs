@@ -3,7 +3,7 @@
 //! A plant is drawn as a tuft: the simulated blade, and companions that move with it. Near by every
 //! one is drawn; `blade_tiles.rs` says how many farther off.
 
-use super::plant_form::FormDrawing;
+use super::plant_form::{FormDrawing, HALVING_STRIDES};
 
 /// Companions stand at most this far from their plant's root, in metres.
 pub(super) const TUFT_RADIUS_M: f32 = 0.045;
@@ -16,6 +16,6 @@ pub(super) const FORM: FormDrawing = FormDrawing {
     fragment: "blade_fragment",
     topology: wgpu::PrimitiveTopology::TriangleStrip,
     // P15 eq. 4 with half the distance of full density as reference, in steps of whole nodes.
-    strides: [1, 2, 4, u32::MAX],
+    strides: HALVING_STRIDES,
     vertices: |steps| 2 * steps + 1,
 };

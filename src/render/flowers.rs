@@ -1,6 +1,6 @@
 //! Flowers: a stem and a head of eight triangles with an alpha mask. Shader: `shaders/flowers.wgsl`.
 
-use super::plant_form::FormDrawing;
+use super::plant_form::{FormDrawing, HALVING_STRIDES};
 
 /// Triangles of a head.
 const HEAD_SECTORS: u32 = 8;
@@ -10,6 +10,6 @@ pub(super) const FORM: FormDrawing = FormDrawing {
     vertex: "flower_vertex",
     fragment: "flower_fragment",
     topology: wgpu::PrimitiveTopology::TriangleList,
-    strides: [1, 2, 4, u32::MAX],
+    strides: HALVING_STRIDES,
     vertices: |steps| 6 * steps + 3 * HEAD_SECTORS,
 };

@@ -3,7 +3,7 @@
 
 use crate::field::Field;
 use crate::field::kinds::MAX_TASTES;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, rgba8_texture};
 use crate::scene::Form;
 use crate::terrain::ColourMap;
 
@@ -50,33 +50,13 @@ impl GroundTexture {
                 wanted: "give four bytes per texel",
             });
         }
-        let size = wgpu::Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        };
-        let texture = gpu.guarded("the base-colour map", || {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("base colour"),
-                size,
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba8UnormSrgb,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            })
-        })?;
-        gpu.queue.write_texture(
-            texture.as_image_copy(),
-            &map.rgba8,
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(width * 4),
-                rows_per_image: None,
-            },
-            size,
-        );
+        let texture = rgba8_texture(
+            gpu,
+            "the base-colour map",
+            wgpu::TextureFormat::Rgba8UnormSrgb,
+            [width, height],
+            Some(&map.rgba8),
+        )?;
         // Mirrored, so that the land beyond the edge goes on in the field's colours.
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("base colour"),

@@ -1,13 +1,13 @@
 //! Broad leaves: two strips along the midrib, cut out by an alpha mask. Shader:
 //! `shaders/leaves.wgsl`.
 
-use super::plant_form::FormDrawing;
+use super::plant_form::{FormDrawing, HALVING_STRIDES};
 
 pub(super) const FORM: FormDrawing = FormDrawing {
     shader: "leaves.wgsl",
     vertex: "leaf_vertex",
     fragment: "leaf_fragment",
     topology: wgpu::PrimitiveTopology::TriangleList,
-    strides: [1, 2, 4, u32::MAX],
+    strides: HALVING_STRIDES,
     vertices: |steps| 12 * steps,
 };

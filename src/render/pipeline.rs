@@ -194,3 +194,12 @@ pub(super) const UNIFORM: wgpu::BindingType = wgpu::BindingType::Buffer {
     has_dynamic_offset: false,
     min_binding_size: None,
 };
+/// A texture of colours, sampled between its texels.
+pub(super) const TEXTURE: wgpu::BindingType = wgpu::BindingType::Texture {
+    sample_type: wgpu::TextureSampleType::Float { filterable: true },
+    view_dimension: wgpu::TextureViewDimension::D2,
+    multisampled: false,
+};
+/// The sampler of a [`TEXTURE`].
+pub(super) const SAMPLER: wgpu::BindingType =
+    wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);

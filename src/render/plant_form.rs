@@ -15,6 +15,9 @@ pub(super) const BUCKETS: u32 = FORM_COUNT * DETAILS;
 /// Vertices reserved per bucket, so that a vertex tells its bucket.
 pub(super) const BUCKET_VERTICES: u32 = 512;
 
+/// Strides of forms that take every node at the finest detail, then half as many; whole plants last.
+pub(super) const HALVING_STRIDES: [u32; DETAILS as usize] = [1, 2, 4, u32::MAX];
+
 /// How one form is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FormDrawing {

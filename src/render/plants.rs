@@ -14,7 +14,7 @@ use crate::scene::Form;
 use super::blade_tiles::{BladeDetail, DrawnTile, Size, drawn_tiles, most_on_triangle};
 use super::camera::View;
 use super::ground_look::GroundTexture;
-use super::pipeline::{Drawing, READ_STORAGE, UNIFORM, bind_group, group_layout};
+use super::pipeline::{Drawing, READ_STORAGE, SAMPLER, TEXTURE, UNIFORM, bind_group, group_layout};
 use super::plant_form::{BUCKETS, DETAILS, FORM_BLADE, FORMS, form_index};
 use super::sort_plants::{DrawArgs, PlantSort, SortInput};
 use super::view_group::ViewGroups;
@@ -159,12 +159,6 @@ pub(super) struct PlantsLayer {
 impl PlantsLayer {
     pub(super) fn new(gpu: &Gpu, groups: &ViewGroups, samples: u32) -> Result<Self, GpuError> {
         let (vertex, fragment) = (ShaderStages::VERTEX, ShaderStages::FRAGMENT);
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let layout = group_layout(
             gpu,
             "plants",
@@ -172,8 +166,8 @@ impl PlantsLayer {
                 (vertex | fragment, UNIFORM),
                 (vertex, READ_STORAGE),
                 (vertex, READ_STORAGE),
-                (vertex, texture),
-                (vertex, sampler),
+                (vertex, TEXTURE),
+                (vertex, SAMPLER),
                 (vertex, READ_STORAGE),
                 (vertex, READ_STORAGE),
             ],

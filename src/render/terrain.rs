@@ -20,7 +20,9 @@ use super::camera::View;
 use super::error::RenderError;
 use super::ground_look::{GroundTexture, TASTE_ROWS, looks};
 use super::ground_mesh::{GroundMesh, TerrainDetail};
-use super::pipeline::{DepthUse, Drawing, READ_STORAGE, UNIFORM, bind_group, group_layout};
+use super::pipeline::{
+    DepthUse, Drawing, READ_STORAGE, SAMPLER, TEXTURE, UNIFORM, bind_group, group_layout,
+};
 use super::plants::{BladesInput, Canopy};
 use super::view_group::ViewGroups;
 
@@ -109,20 +111,14 @@ pub(super) struct TerrainLayer {
 impl TerrainLayer {
     pub(super) fn new(gpu: &Gpu, groups: &ViewGroups, samples: u32) -> Result<Self, GpuError> {
         let both = ShaderStages::VERTEX_FRAGMENT;
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let layout = group_layout(
             gpu,
             "ground",
             &[
                 (both, UNIFORM),
                 (ShaderStages::VERTEX, READ_STORAGE),
-                (ShaderStages::FRAGMENT, texture),
-                (ShaderStages::FRAGMENT, sampler),
+                (ShaderStages::FRAGMENT, TEXTURE),
+                (ShaderStages::FRAGMENT, SAMPLER),
                 (ShaderStages::VERTEX, READ_STORAGE),
             ],
         );

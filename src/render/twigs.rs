@@ -1,6 +1,6 @@
 //! Twigs: three-sided sticks with a side branch. Shader: `shaders/twigs.wgsl`.
 
-use super::plant_form::FormDrawing;
+use super::plant_form::{FormDrawing, HALVING_STRIDES};
 
 /// Sides of a stick.
 const SIDES: u32 = 3;
@@ -10,7 +10,7 @@ pub(super) const FORM: FormDrawing = FormDrawing {
     vertex: "twig_vertex",
     fragment: "twig_fragment",
     topology: wgpu::PrimitiveTopology::TriangleList,
-    strides: [1, 2, 4, u32::MAX],
+    strides: HALVING_STRIDES,
     // The branch is one more segment.
     vertices: |steps| 6 * SIDES * (steps + 1),
 };

@@ -45,7 +45,7 @@ impl Swept {
 }
 
 fn swept_in(meadow: &Meadow, tile: &TileWork, body: u32) -> Vec<(TileId, u32)> {
-    let contacts = &meadow.work.contacts[tile.contacts.start as usize..tile.contacts.end as usize];
+    let contacts = meadow.work.contacts_of(tile);
     let contacts: Vec<&Contact> = contacts.iter().filter(|c| c.body == body).collect();
     if contacts.is_empty() {
         return Vec::new();

@@ -314,7 +314,9 @@ fn touches_of<'a, R: Real>(
     grown: &'a [Solid<R>],
     tile: &TileWork,
 ) -> Vec<Touch<'a, R>> {
-    meadow.work.contacts[tile.contacts.start as usize..tile.contacts.end as usize]
+    meadow
+        .work
+        .contacts_of(tile)
         .iter()
         .map(|contact| {
             let part = contact.part as usize;

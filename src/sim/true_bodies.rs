@@ -57,8 +57,7 @@ struct TrueBody<'a> {
 
 impl<'a> TrueBodies<'a> {
     pub fn near(meadow: &'a Meadow, tile: &TileWork) -> Self {
-        let contacts =
-            &meadow.work.contacts[tile.contacts.start as usize..tile.contacts.end as usize];
+        let contacts = meadow.work.contacts_of(tile);
         let mut bodies: BTreeMap<u32, TrueBody<'a>> = BTreeMap::new();
         for contact in contacts {
             let part = &meadow.parts.parts[contact.part as usize];

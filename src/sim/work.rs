@@ -171,6 +171,11 @@ impl Contact {
 }
 
 impl Work {
+    /// The parts near a tile; none for a recovering one.
+    pub fn contacts_of(&self, tile: &TileWork) -> &[Contact] {
+        &self.contacts[tile.contacts.start as usize..tile.contacts.end as usize]
+    }
+
     /// Lists the contacts of one colliding tile with the movers whose bounds reach its plants.
     pub fn add_contacts(
         &mut self,
