@@ -49,6 +49,27 @@ fn the_reference_engine_runs_the_whole_scene() {
     assert!((simulated_s - 0.1).abs() < 1e-9, "{simulated_s}");
 }
 
+/// The program is another build of the library than the tests have: other features, other inlining.
+/// The optimiser once made it miss bodies near a tile, which the pinned hash tells.
+#[test]
+fn the_program_has_the_bits_that_the_tests_have() {
+    let output = sward(&["run", "vehicle", "mesh_drop", "--engine", "cpu", "--json"]);
+    assert_eq!(
+        code(&output),
+        0,
+        "{}",
+        String::from_utf8_lossy(&output.stdout)
+    );
+    for run in json(&output)["scenarios"].as_array().expect("two runs") {
+        let verdicts = run["expectations"].as_array().expect("verdicts");
+        let pinned = verdicts.iter().find(|verdict| {
+            let what = verdict["what"].as_str().expect("a text");
+            what.starts_with("the state hash")
+        });
+        assert_eq!(pinned.expect("a pinned hash")["passed"], true);
+    }
+}
+
 #[test]
 fn usage_errors_are_2_and_help_is_0() {
     for wrong in [

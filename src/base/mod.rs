@@ -11,5 +11,5 @@ pub mod vec3;
 
 pub use hash::Hash64;
 pub use pose::{Pose, Quat};
-pub use real::Real;
+pub use real::{Real, least, most, widened};
 pub use vec3::{Vec3, vec3};

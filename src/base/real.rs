@@ -85,3 +85,22 @@ macro_rules! real {
 
 real!(f32);
 real!(f64);
+
+// A loop that gathers several extremes with `f64::min` and `f64::max` loses some of them where
+// rustc 1.95 (LLVM 22) vectorises it: bounds came out decimetres too small, in some builds and not in
+// others. These compare, which the optimiser leaves alone. Loops over floats take them.
+
+/// The smaller of two floats; the first where they cannot be compared.
+pub fn least<R: Real>(a: R, b: R) -> R {
+    Real::min(a, b)
+}
+
+/// The larger of two floats; the first where they cannot be compared.
+pub fn most<R: Real>(a: R, b: R) -> R {
+    Real::max(a, b)
+}
+
+/// A range, widened to hold another one.
+pub fn widened<R: Real>([low, high]: [R; 2], other: [R; 2]) -> [R; 2] {
+    [least(low, other[0]), most(high, other[1])]
+}

@@ -28,7 +28,7 @@ use std::f64::consts::PI;
 
 use thiserror::Error;
 
-use crate::base::Real;
+use crate::base::{Real, most};
 use crate::scene::Root;
 
 /// Most segments of a blade.
@@ -230,7 +230,7 @@ impl Chain {
             let angles = self.angles(&openings);
             let torques = self.torques(&openings, &angles);
             let turns = self.newton_turns(&angles, &torques);
-            let step = turns.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
+            let step = turns.iter().fold(0.0, |m: f64, t| most(m, t.abs()));
             let only_rounding = step >= last_step && self.relative(&torques) < ROUNDING_RESIDUAL;
             if only_rounding {
                 return Ok((openings, iteration - 1));
@@ -314,7 +314,7 @@ impl Chain {
     }
 
     fn relative(&self, torques: &[f64]) -> f64 {
-        torques.iter().fold(0.0, |m: f64, t| m.max(t.abs())) / self.scale
+        torques.iter().fold(0.0, |m: f64, t| most(m, t.abs())) / self.scale
     }
 
     fn energy(&self, openings: &[f64], angles: &[f64]) -> f64 {

@@ -40,7 +40,7 @@ pub use errors::TableErrors;
 use super::blade_shape::{
     self, STIFFNESS_RANGE, ShapeError, critical_stiffness, stiffness_for_segments,
 };
-use crate::base::Real;
+use crate::base::{Real, least, most};
 use crate::scene::{Grass, Root, Species};
 
 /// Blades that lean less than this, 1.95°, bend so suddenly about the critical stiffness that an even
@@ -126,11 +126,8 @@ pub enum TableError {
 impl Axis {
     fn over(ranges: &[[f64; 2]], entries: u32) -> Self {
         Self {
-            min: ranges.iter().map(|r| r[0]).fold(f64::INFINITY, f64::min),
-            max: ranges
-                .iter()
-                .map(|r| r[1])
-                .fold(f64::NEG_INFINITY, f64::max),
+            min: ranges.iter().map(|r| r[0]).fold(f64::INFINITY, least),
+            max: ranges.iter().map(|r| r[1]).fold(f64::NEG_INFINITY, most),
             entries: entries.max(2),
             spacing: Spacing::Even,
         }

@@ -6,6 +6,7 @@
 //! so lies in one anchor: neither roots nor coordinates depend on the tile size.
 
 use crate::base::Real;
+use crate::base::widened;
 use crate::scene::{Grass, Solver};
 use crate::terrain::HeightGrid;
 
@@ -235,7 +236,7 @@ impl FieldGrid {
         for row in low[1]..=high[1] {
             for column in low[0]..=high[0] {
                 let h = ground.sample(column, row);
-                range = [range[0].min(h), range[1].max(h)];
+                range = widened(range, [h, h]);
             }
         }
         range

@@ -26,6 +26,7 @@ pub use wind::WindNow;
 
 use std::sync::Arc;
 
+use crate::base::most;
 use crate::scene::{Grass, Solver};
 use crate::terrain::bintree::Bintree;
 use crate::terrain::{ColourMap, HeightGrid};
@@ -91,7 +92,7 @@ impl Field {
         let reach_m = grass
             .species
             .iter()
-            .fold(0.0_f32, |reach, kind| reach.max(kind.height_m[1]));
+            .fold(0.0_f32, |reach, kind| most(reach, kind.height_m[1]));
         let ground = Arc::new(ground);
         Ok(Self {
             bintree: Arc::new(Bintree::new(Arc::clone(&ground))),
@@ -116,6 +117,13 @@ impl Field {
         self.seeds.species[plant.species as usize]
             .bends
             .then_some(plant)
+    }
+
+    /// Calls `found` with every tile that has a plant which may touch a box in the world.
+    pub fn near(&self, bounds: &Bounds, found: impl FnMut(TileId)) {
+        let reach_m = f64::from(self.reach_m);
+        self.octree
+            .query(&self.grid, &self.ground, bounds, reach_m, found);
     }
 
     /// Whether anything grows here at all.

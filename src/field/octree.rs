@@ -5,6 +5,7 @@
 //! range of heights, kept in a pyramid of minima and maxima. A query visits the tiles it
 //! reports and their ancestors only; its cost does not grow with the meadow.
 
+use crate::base::{least, most, widened};
 use crate::terrain::HeightGrid;
 
 use super::grid::{FieldGrid, TileId};
@@ -41,11 +42,12 @@ impl Bounds {
         }
     }
 
-    /// The smallest box around both.
+    /// The smallest box around both. By [`Real`]'s comparisons: with `f64::max` the optimiser of
+    /// rustc 1.95 left corners of turned boxes out, in some builds and not in others.
     pub fn union(self, other: Self) -> Self {
         Self {
-            low: [0, 1, 2].map(|a| self.low[a].min(other.low[a])),
-            high: [0, 1, 2].map(|a| self.high[a].max(other.high[a])),
+            low: [0, 1, 2].map(|a| least(self.low[a], other.low[a])),
+            high: [0, 1, 2].map(|a| most(self.high[a], other.high[a])),
         }
     }
 }
@@ -159,7 +161,7 @@ fn leaf_range(grid: &FieldGrid, ground: &HeightGrid, node: [u32; 2]) -> [f32; 2]
         let row = node[1] * LEAF_TILES + place / LEAF_TILES;
         if column < grid.tiles[0] && row < grid.tiles[1] {
             let [low, high] = grid.tile_heights(grid.tile_at(column, row), ground);
-            range = [range[0].min(low), range[1].max(high)];
+            range = widened(range, [low, high]);
         }
     }
     range
@@ -172,7 +174,7 @@ fn parent_level(below: &Level) -> Level {
         for column in 0..below.nodes[0] {
             let [low, high] = below.ranges[(row * below.nodes[0] + column) as usize];
             let range = &mut ranges[((row / 2) * nodes[0] + column / 2) as usize];
-            *range = [range[0].min(low), range[1].max(high)];
+            *range = widened(*range, [low, high]);
         }
     }
     Level { nodes, ranges }

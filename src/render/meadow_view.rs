@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::Vec3;
+use crate::base::{Vec3, most};
 use crate::field::{Bounds, TileId, TileState};
 use crate::scene::Camera;
 use crate::sim::Meadow;
@@ -119,7 +119,7 @@ fn framing_view(meadow: &Meadow) -> View {
     let spread = places
         .iter()
         .map(|&place| (place - middle).length())
-        .fold(1.5, f64::max);
+        .fold(1.5, most);
     // Half the field of view sees the spread at this distance.
     let away = spread / (0.5 * f64::from(DEFAULT_FOV_DEG)).to_radians().tan();
     let eye = middle + Vec3::new(0.35, 0.35, 0.87) * away;

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use wgpu::{BufferUsages, ShaderStages};
 
 use crate::base::Vec3;
+use crate::base::widened;
 use crate::field::Field;
 use crate::gpu::{Buffer, FieldBuffers, Gpu, GpuError};
 use crate::gpu_struct;
@@ -339,7 +340,7 @@ fn chunks_of(heights: &HeightGrid) -> Vec<ChunkBounds> {
             for row in first_row..=first_row + squares {
                 for column in first_column..=first_column + squares {
                     let h = heights.sample(column, row);
-                    range = [range[0].min(h), range[1].max(h)];
+                    range = widened(range, [h, h]);
                 }
             }
             let x = corner_x + f64::from(first_column) * spacing;

@@ -392,7 +392,7 @@ fn state_hash(engine: &Engine, is: &str, as_written: bool) -> Verdict {
         }
         Some(hash) => none(
             Some(hash == is),
-            (hash != is).then(|| format!("it is {hash}")),
+            (hash != is).then(|| format!("this run's is {hash}")),
         ),
     }
 }

@@ -3,7 +3,7 @@
 //! Engines share it: whatever is decided here (which tiles are awake, which slab a tile has, which
 //! parts may touch it, how many sweeps a body needs) is decided once, on the CPU.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::bodies::{Bodies, BodyError, Link};
@@ -89,6 +89,29 @@ pub enum MeadowError {
     Field(#[from] FieldError),
     #[error(transparent)]
     Body(#[from] BodyError),
+}
+
+/// The tiles whose plants a mover may touch, and the movers near any tile: those that would reach
+/// a plant there as a ball.
+fn near_movers<'a>(
+    field: &Field,
+    parts: &Parts,
+    movers: &'a [Mover],
+) -> (BTreeSet<TileId>, BTreeMap<TileId, Vec<&'a Mover>>) {
+    let mut touched = BTreeSet::new();
+    let mut near: BTreeMap<TileId, Vec<&Mover>> = BTreeMap::new();
+    if field.is_bare() {
+        return (touched, near);
+    }
+    for mover in movers {
+        field.near(&mover.bounds, |tile| {
+            touched.insert(tile);
+        });
+        field.near(&mover.ball_bounds(parts), |tile| {
+            near.entry(tile).or_default().push(mover);
+        });
+    }
+    (touched, near)
 }
 
 fn lay_out(ground: HeightGrid, scene: &Scene, assets: &Assets) -> Result<Field, MeadowError> {
@@ -243,19 +266,8 @@ impl Meadow {
                 Mover::new(link, number, shape, solver, f64::from(self.field.reach_m))
             })
             .collect();
-        let mut near: BTreeMap<TileId, Vec<&Mover>> = BTreeMap::new();
-        if !self.field.is_bare() {
-            for mover in &self.movers {
-                self.counters.capped_sweeps += u64::from(mover.capped);
-                let (field, reach) = (&self.field, f64::from(self.field.reach_m));
-                field
-                    .octree
-                    .query(&field.grid, &field.ground, &mover.bounds, reach, |tile| {
-                        near.entry(tile).or_default().push(mover);
-                    });
-            }
-        }
-        let tiles: Vec<TileId> = near.keys().copied().collect();
+        let (touched, near) = near_movers(&self.field, &self.parts, &self.movers);
+        let tiles: Vec<TileId> = touched.into_iter().collect();
         let recovery_ticks = self.recovery_ticks();
         self.changes = self.tiles.update(&tiles, self.ticks, recovery_ticks);
         let mut work = Work {
@@ -296,10 +308,12 @@ impl Meadow {
     }
 
     fn count(&mut self) {
+        let capped = self.movers.iter().filter(|mover| mover.capped).count() as u64;
         let plants = u64::from(self.field.grid.plants_per_tile());
         let active = self.tiles.len() as u64;
         let bytes = self.state_bytes();
         let counters = &mut self.counters;
+        counters.capped_sweeps += if self.field.is_bare() { 0 } else { capped };
         counters.refused_tiles = self.tiles.slabs.refused;
         counters.plants_peak = counters.plants_peak.max(active * plants);
         counters.state_bytes_peak = counters.state_bytes_peak.max(bytes);

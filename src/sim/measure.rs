@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use crate::base::{Real, Vec3};
+use crate::base::{Real, Vec3, most};
 use crate::field::grid::ground_in_anchor;
 use crate::field::{Bounds, Plant, TileId};
 
@@ -200,9 +200,9 @@ impl Snapshot {
         nodes[..=segments].copy_from_slice(&plant.nodes);
         let length: R = segment_length(&plant.plant, segments);
         let strain = largest_strain(&nodes, segments, length).to_f64();
-        self.max_strain = self.max_strain.max(strain);
+        self.max_strain = most(self.max_strain, strain);
         for (node, wind) in plant.nodes.iter().zip(&plant.wind).skip(1) {
-            self.max_offset_m = self.max_offset_m.max((*node - *wind).length().to_f64());
+            self.max_offset_m = most(self.max_offset_m, (*node - *wind).length().to_f64());
         }
         if plant.touched_at == meadow.work.now {
             self.add_pushed(meadow, tile, bodies, plant);
@@ -234,7 +234,7 @@ impl Snapshot {
             let Some(found) = bodies.deepest(p) else {
                 return;
             };
-            nearest = nearest.max(found.depth_m);
+            nearest = most(nearest, found.depth_m);
             let ground: f64 = ground_in_anchor(&meadow.field.ground, &tile.anchor, p.x, p.z);
             let excess = bodies.beyond_pinch(p, found, ground);
             self.pinched += u64::from(found.depth_m > 0.0 && p.y <= ground + ON_GROUND_M);

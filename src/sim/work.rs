@@ -139,7 +139,30 @@ impl Mover {
             capped: wished > f64::from(solver.max_sweeps),
         }
     }
+
+    /// Bounds of the balls around the link's parts, swept. Every plant that a part
+    /// [reaches](super::contact::Touch::reaches) has its root in them, once they are grown by its
+    /// length. Lists of contacts go by these, so that a plant takes its sweeps from the same
+    /// bodies in a tile of any size.
+    pub fn ball_bounds(&self, parts: &Parts) -> Bounds {
+        let balls = parts.of_shape(self.link.shape).flat_map(|part| {
+            let part = &parts.parts[part];
+            [self.link.from, self.link.to].map(|world_from_body| {
+                let middle = world_from_body.point(part.pose.place).to_f64();
+                let point = Bounds {
+                    low: middle,
+                    high: middle,
+                };
+                point.grown(part.radius_m + BALL_MARGIN_M)
+            })
+        });
+        balls.reduce(Bounds::union).unwrap_or(self.bounds)
+    }
 }
+
+/// What the kernels' `f32` may add to a distance between a root and a part, in metres: a hundred
+/// roundings of coordinates below 16 m.
+const BALL_MARGIN_M: f64 = 1e-4;
 
 /// World bounds of a box in a body's space.
 fn turned_box(world_from_body: Pose<f64>, [low, high]: [[f64; 3]; 2]) -> Bounds {

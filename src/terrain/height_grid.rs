@@ -5,7 +5,7 @@
 //! odd: the pattern of a right-isosceles bintree at every even level, so that halved squares
 //! nest in it and a seeding triangle never straddles an edge.
 
-use crate::base::Real;
+use crate::base::{Real, widened};
 
 /// A rectangle of height samples. Place 0, 0 of the *field* is the corner with the smallest x and
 /// z.
@@ -100,8 +100,8 @@ impl HeightGrid {
     pub fn range_m(&self) -> [f32; 2] {
         self.heights_m
             .iter()
-            .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &h| {
-                [low.min(h), high.max(h)]
+            .fold([f32::INFINITY, f32::NEG_INFINITY], |range, &h| {
+                widened(range, [h, h])
             })
     }
 

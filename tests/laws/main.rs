@@ -2,6 +2,7 @@
 
 #![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
 
+mod bounds;
 mod pressed;
 
 use std::collections::BTreeMap;

@@ -17,6 +17,7 @@
 use std::f64::consts::PI;
 
 use super::{ShapeError, check, solve};
+use crate::base::most;
 use crate::base::philox::{philox2x32, unit};
 use crate::scene::Root;
 
@@ -69,7 +70,7 @@ pub fn least_energy(
         let found = blade.descend((0..segments).map(draw).collect());
         let apart = |(a, b): (&f64, &f64)| (a - b).abs();
         let gaps = best.angles_rad.iter().zip(&found.angles_rad).map(apart);
-        let spread_rad = gaps.fold(best.spread_rad, f64::max);
+        let spread_rad = gaps.fold(best.spread_rad, most);
         let last_move_rad = best.last_move_rad.max(found.last_move_rad);
         let lower = if found.energy < best.energy {
             found
@@ -107,7 +108,7 @@ pub fn noise_floor(
             at[0] + length * libm::sin(*angle),
             at[1] + length * libm::cos(*angle),
         ];
-        largest = largest.max(libm::hypot(at[0] - node[0], at[1] - node[1]));
+        largest = most(largest, libm::hypot(at[0] - node[0], at[1] - node[1]));
     }
     Ok(largest)
 }
@@ -140,7 +141,7 @@ impl Blade {
             last_move_rad = 0.0;
             for j in 0..self.segments {
                 let lowest = self.lowest(&angles, j);
-                last_move_rad = last_move_rad.max((lowest - angles[j]).abs());
+                last_move_rad = most(last_move_rad, (lowest - angles[j]).abs());
                 angles[j] = lowest;
             }
             sweeps += 1;

@@ -2,6 +2,7 @@
 
 use super::blade_shape::ShapeError;
 use super::{Axis, BladeTable};
+use crate::base::most;
 
 /// Distances of nodes between a table and the solver, in blade lengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -42,7 +43,7 @@ impl BladeTable {
                         inside(stiffness, 1 + quarters % 3, &self.log2_k),
                         inside(lean, 1 + quarters / 3, &self.lean_rad),
                     )?;
-                    max = max.max(largest);
+                    max = most(max, largest);
                     mean_square += plants * square / 9.0;
                 }
             }
@@ -65,7 +66,7 @@ impl BladeTable {
             let length = libm::hypot(x, y) * f64::from(self.segments);
             at = [at[0] + x / length, at[1] + y / length];
             let gap = libm::hypot(at[0] - node[0], at[1] - node[1]);
-            largest = largest.max(gap);
+            largest = most(largest, gap);
             squares += gap * gap;
         }
         Ok((largest, squares / f64::from(self.segments)))

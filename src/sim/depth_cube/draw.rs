@@ -1,6 +1,6 @@
 //! What a texel of a depth cube stores: the first meeting of its ray with the solid.
 
-use crate::base::{Vec3, vec3};
+use crate::base::{Vec3, least, vec3};
 
 use super::super::solid::{NO_FACE, Plane, Reach, Solid};
 use super::{DEPTH_STEPS, HIDDEN, HIT, face_normal};
@@ -103,7 +103,7 @@ fn enter_planes(
                 first = (t, plane.normal);
             }
         } else {
-            last = last.min(ahead / slope);
+            last = least(last, ahead / slope);
         }
     }
     (first.0 < last).then_some(first)

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use crate::base::widened;
 use crate::terrain::HeightGrid;
 
 use super::geometry::{Point, Triangle};
@@ -98,7 +99,7 @@ impl Lattice {
         for z in low[1]..=high[1] {
             for x in low[0]..=high[0] {
                 let h = self.height_m([x, z]);
-                range = [range[0].min(h), range[1].max(h)];
+                range = widened(range, [h, h]);
             }
         }
         (range[1] - range[0]).next_up()

@@ -10,7 +10,7 @@
 //! seeding level 'too far' is asked of all it holds, and only at that level of its closest corner;
 //! what faces away is dropped only where it hides its plants (`hidden.rs`).
 
-use crate::base::Vec3;
+use crate::base::{Vec3, least, most};
 
 use super::Bintree;
 use super::geometry::{Point, Triangle};
@@ -259,15 +259,15 @@ impl<F: FnMut(SeedTriangle)> Traversal<'_, F> {
         depth: u32,
     ) -> Option<bool> {
         let squares = corners.map(|c| c.distance2_m2);
-        let closest2 = squares.iter().fold(f32::INFINITY, |a, &b| a.min(b));
-        let farthest2 = squares.iter().fold(0.0_f32, |a, &b| a.max(b));
+        let closest2 = squares.iter().fold(f32::INFINITY, |a, &b| least(a, b));
+        let farthest2 = squares.iter().fold(0.0_f32, |a, &b| most(a, b));
         let reach_m = self.seeding.reach_m;
         let mut beyond_m = reach_m;
         if depth < self.last_depth {
             let heights = corners.map(|c| c.height_m);
             let [low, high] = [
-                heights.iter().fold(f32::INFINITY, |a, &b| a.min(b)),
-                heights.iter().fold(f32::NEG_INFINITY, |a, &b| a.max(b)),
+                heights.iter().fold(f32::INFINITY, |a, &b| least(a, b)),
+                heights.iter().fold(f32::NEG_INFINITY, |a, &b| most(a, b)),
             ];
             let [a, b] = triangle.base;
             let base_m = [0, 1].map(|i| (b[i] - a[i]) as f32 * self.unit_m as f32);
@@ -300,9 +300,9 @@ impl<F: FnMut(SeedTriangle)> Traversal<'_, F> {
         if upright.is_nan() || upright <= 0.0 || eye_below_m <= half_m {
             return None;
         }
-        let farthest2 = corners.iter().fold(0.0_f32, |most, c| {
+        let farthest2 = corners.iter().fold(0.0_f32, |farthest2, c| {
             let above_m = (f64::from(c.height_m) - self.eye_y) as f32;
-            most.max(c.distance2_m2 - above_m * above_m)
+            most(farthest2, c.distance2_m2 - above_m * above_m)
         });
         let steepness = (normal.length_squared() / (upright * upright) - 1.0)
             .max(0.0)

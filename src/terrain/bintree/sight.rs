@@ -1,5 +1,7 @@
 //! Boxes around triangles, relative to the eye: whether they are in the picture, and how near.
 
+use crate::base::widened;
+
 use super::geometry::Triangle;
 use super::lattice::Lattice;
 use super::viewpoint::Viewpoint;
@@ -48,7 +50,7 @@ impl<'a> Sight<'a> {
         let mut heights = [f32::INFINITY, f32::NEG_INFINITY];
         for corner in triangle.corners() {
             let h = self.lattice.height_m(corner);
-            heights = [heights[0].min(h), heights[1].max(h)];
+            heights = widened(heights, [h, h]);
         }
         let [low, high] = triangle.bounds().map(|p| self.lattice.on_terrain(p));
         let along = |n: i32, axis: usize| {

@@ -10,6 +10,8 @@
 
 use rayon::prelude::*;
 
+use crate::base::most;
+
 use super::geometry::{Diamond, Point, Triangle};
 use super::lattice::{Lattice, Side};
 
@@ -94,7 +96,7 @@ impl Wedgies {
                     slope: u16::MAX,
                 },
             };
-            worst.half_m = worst.half_m.max(found.half_m);
+            worst.half_m = most(worst.half_m, found.half_m);
             worst.slope = worst.slope.max(found.slope);
         }
         worst
@@ -127,7 +129,7 @@ impl Wedgies {
     fn of_halves(&self, lattice: &Lattice, middle: Point, triangle: &Triangle) -> f32 {
         let halves = triangle.halves(middle);
         let points = halves.iter().filter_map(Triangle::split_point);
-        points.fold(0.0, |worst, p| worst.max(self.half_m[lattice.index(p)]))
+        points.fold(0.0, |worst, p| most(worst, self.half_m[lattice.index(p)]))
     }
 
     /// Half thickness of the diamond that a point splits, in metres.
