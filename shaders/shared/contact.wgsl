@@ -26,19 +26,11 @@ struct ContactRecord {
 
 @group(1) @binding(2) var<storage, read> contacts: array<ContactRecord>;
 
-// The part's pose at a share of the sub-step, its turn along the shorter way.
+// The part's pose at a share of the sub-step.
 fn pose_at(contact: u32, share: f32) -> Pose {
-    let from_turn = contacts[contact].from_turn;
-    let to_turn = contacts[contact].to_turn;
-    let same_side = dot(from_turn, to_turn) >= 0.0;
-    let mixed = from_turn * (1.0 - share) + to_turn * select(-share, share, same_side);
-    let length = sqrt(dot(mixed, mixed));
-    var turn = from_turn;
-    if length > 1e-12 {
-        turn = mixed * (1.0 / length);
-    }
-    let place = contacts[contact].from_place * (1.0 - share) + contacts[contact].to_place * share;
-    return Pose(turn, place);
+    let from_pose = Pose(contacts[contact].from_turn, contacts[contact].from_place);
+    let to_pose = Pose(contacts[contact].to_turn, contacts[contact].to_place);
+    return lerp_poses(from_pose, to_pose, share);
 }
 
 // True where the swept ball around the part may reach a ball around a plant's root.

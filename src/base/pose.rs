@@ -23,8 +23,8 @@ impl<R: Real> Quat<R> {
     };
 
     pub fn rotate(self, p: Vec3<R>) -> Vec3<R> {
-        let t = self.v.cross(p) * R::of(2.0);
-        p + t * self.w + self.v.cross(t)
+        let aside = self.v.cross(p);
+        p + (aside * self.w + self.v.cross(aside)) * R::of(2.0)
     }
 
     pub fn inverse(self) -> Self {

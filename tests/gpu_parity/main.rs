@@ -7,6 +7,7 @@ mod meadows;
 mod passes;
 mod plants;
 mod probe;
+mod rigid;
 mod runs;
 mod scenes;
 
@@ -36,6 +37,7 @@ const CHECKS: &[(&str, Check)] = &[
         "poses_about_the_knee_agree",
         plants::poses_about_the_knee_agree,
     ),
+    ("poses_are_equal", rigid::poses_are_equal),
     ("cubes_of_closed_forms_agree", cubes::closed_forms_agree),
     ("hidden_faces_agree", cubes::hidden_faces_agree),
     (
