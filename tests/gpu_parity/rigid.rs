@@ -3,7 +3,7 @@
 
 use libtest_mimic::Failed;
 use sward::base::philox::{philox2x32, unit};
-use sward::base::{Pose, Quat, Vec3};
+use sward::base::{Pose, Quat, Vec3, most};
 use sward::field::WindNow;
 use sward::gpu::field_data::TileRecord;
 use sward::scene::Solver;
@@ -81,7 +81,8 @@ pub fn poses_are_equal(device: &Device) -> Result<(), Failed> {
         for (differ, (row, want)) in differ.iter_mut().zip(rows.iter().zip(&want)) {
             *differ += u32::from(row != want);
             for (&found, &want) in row.iter().zip(want) {
-                largest = largest.max((f32::from_bits(found) - f32::from_bits(want)).abs());
+                let apart = (f32::from_bits(found) - f32::from_bits(want)).abs();
+                largest = most(largest, apart);
             }
         }
     }

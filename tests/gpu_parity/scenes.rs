@@ -20,9 +20,6 @@ const FLIPPED_SHARE: f64 = 1e-3;
 /// Frames per second at which poses are compared.
 const FRAMES_PER_S: f64 = 30.0;
 
-/// Scenes that miss a limit, with what was measured. Their trials are ignored, by this name.
-pub const UNMET: &[(&str, &str)] = &[];
-
 /// Names of the scenes, shipped ones first.
 pub fn names() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");

@@ -2,11 +2,12 @@
 
 use sward::base::philox::{Pcg, unit};
 use sward::base::{Pose, Quat, Vec3};
-use sward::scene::parse_scene;
 use sward::sim::Meadow;
 use sward::sim::contact::Touch;
 use sward::sim::fault::Planted;
 use sward::sim::work::{Mover, Work};
+
+use super::{meadow, scene};
 
 const LENGTH_M: f64 = 0.3;
 
@@ -28,22 +29,24 @@ fn turned(random: &mut impl FnMut(f64) -> f64) -> Pose<f64> {
     }
 }
 
+/// A thin board, whose parts are known after its first move.
 fn meadow_with_a_board() -> Meadow {
-    let text = r#"(
-        duration_s: 1,
-        terrain: (ground: Flat(size_m: (8, 8))),
-        bodies: [(name: "board", shape: Box(size_m: (0.04, 1.2, 0.1)), position_m: (0, 2, 0))],
-    )"#;
-    let loaded = parse_scene("board", text, &[]).expect("a scene");
-    Meadow::new(loaded.scene, &loaded.assets).expect("a meadow")
+    let mut meadow = meadow(&scene(
+        r#"(
+            duration_s: 1,
+            terrain: (ground: Flat(size_m: (8, 8))),
+            bodies: [(name: "board", shape: Box(size_m: (0.04, 1.2, 0.1)), position_m: (0, 2, 0))],
+        )"#,
+    ));
+    meadow.move_bodies();
+    meadow
 }
 
 /// Seen from outside, because the optimiser once left corners out in some builds of the library and
 /// not in others.
 #[test]
 fn the_bounds_of_a_turning_body_hold_its_corners() {
-    let mut meadow = meadow_with_a_board();
-    meadow.move_bodies();
+    let meadow = meadow_with_a_board();
     let shape = &meadow.bodies.shapes()[0];
     let [low, high] = shape.parts[0].bounds_m;
     for seed in 0..1000 {
@@ -66,8 +69,7 @@ fn the_bounds_of_a_turning_body_hold_its_corners() {
 /// of the plant's tile, however small that is.
 #[test]
 fn ball_bounds_hold_every_plant_that_a_part_reaches() {
-    let mut meadow = meadow_with_a_board();
-    meadow.move_bodies();
+    let meadow = meadow_with_a_board();
     let shape = &meadow.bodies.shapes()[0];
     let grown = &meadow.parts.parts[0].grown;
     let anchor = meadow.field.grid.anchor_of(0, &meadow.field.ground);

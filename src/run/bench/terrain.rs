@@ -302,7 +302,7 @@ fn cull_by_octree(field: &Field, view: &View, aspect: f32, reach_m: f32) -> u64 
         high: eye.map(|x| x + reach),
     };
     let mut count = 0;
-    field.octree.query(grid, ground, &around, tall, |tile| {
+    field.near(&around, |tile| {
         let [low, high] = grid.tile_bounds(tile, ground);
         let heights = grid.tile_heights(tile, ground).map(f64::from);
         let low = [low[0] - tall, heights[0] - 0.5 * tall, low[1] - tall];
