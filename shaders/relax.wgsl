@@ -122,12 +122,13 @@ fn meet_part(
     tile: TileRecord,
     contact: u32,
     pose: Pose,
+    share: f32,
     length: f32,
     j: u32,
     laying: bool,
 ) -> bool {
     let reach = Reach(nodes[j], select(-1.0, length, laying), before);
-    let exit = way_out(contact, pose, nodes[j + 1u], faces[j], reach);
+    let exit = way_out(contact, pose, share, nodes[j + 1u], faces[j], reach);
     if exit.face == NO_FACE {
         return false;
     }
@@ -144,29 +145,40 @@ fn meet_part(
 // Returns whether a part moved a node.
 fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, laying: bool) -> bool {
     let parts = tile.end_contact - tile.first_contact;
+    // A segment that is laid out asks all parts, and then again those it has not asked since one turned it.
+    let looks = parts * select(1u, LOOKS, laying);
     var pushed = false;
     var posed = NO_FACE;
     var pose: Pose;
     var near = false;
-    for (var step = 0u; step < parts * field.segments; step++) {
-        let part = select(step / field.segments, step % parts, laying);
-        let j = select(step % field.segments, step / parts, laying);
-        if laying && part == 0u {
+    var asked_since = 0u;
+    var turned = false;
+    for (var step = 0u; step < looks * field.segments; step++) {
+        let look = select(step / field.segments, step % looks, laying);
+        let part = look % parts;
+        let j = select(step % field.segments, step / looks, laying);
+        if laying && look == 0u {
+            asked_since = 0u;
+            turned = false;
             before = nodes[j + 1u];
             let direction = unit_or(nodes[j + 1u] - nodes[j], rest_direction(j));
             nodes[j + 1u] = nodes[j] + direction * length;
             lay_on_ground(tile, length, j);
         }
         let contact = tile.first_contact + part;
-        if posed != contact {
+        asked_since++;
+        let asked = look < parts || (turned && asked_since < parts);
+        if asked && posed != contact {
             posed = contact;
             pose = pose_at(contact, share);
             near = reaches(contact, nodes[0], plant_reach);
         }
-        if near {
-            pushed = meet_part(tile, contact, pose, length, j, laying) || pushed;
+        if asked && near && meet_part(tile, contact, pose, share, length, j, laying) {
+            pushed = true;
+            turned = true;
+            asked_since = 0u;
         }
-        if laying && part + 1u == parts {
+        if laying && look + 1u == looks {
             lay_on_ground(tile, length, j);
         }
     }

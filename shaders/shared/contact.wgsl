@@ -2,6 +2,7 @@
 #import "shared/cube.wgsl"
 #import "shared/rigid.wgsl"
 #import "shared/solid.wgsl"
+#import "shared/tick.wgsl"
 #import "shared/tile.wgsl"
 
 struct ContactRecord {
@@ -20,7 +21,11 @@ struct ContactRecord {
     uses_cube: u32,
     // A vertex that was pushed before is held while it is no farther off.
     hold_m: f32,
-    spare: u32,
+    // Number of the part within its body, whose parts follow one another.
+    part_in_body: u32,
+    parts_of_body: u32,
+    spare_a: u32,
+    spare_b: vec2u,
     solid: SolidRecord,
 }
 
@@ -75,9 +80,49 @@ fn nearly_holds(contact: u32, vertex: vec3f) -> bool {
     return depth > -contacts[contact].hold_m;
 }
 
-// The way out of the part at a pose for a vertex with a memory of its last face. `reach` is the
-// vertex's segment in the anchor's coordinates.
-fn way_out(contact: u32, pose: Pose, vertex: vec3f, memory: u32, reach: Reach) -> Exit {
+// True where a point of the anchor's space is in another part of a contact's body at a share of the
+// sub-step.
+fn is_covered(contact: u32, share: f32, p: vec3f) -> bool {
+    let first = contact - contacts[contact].part_in_body;
+    for (var other = first; other < first + contacts[contact].parts_of_body; other++) {
+        if other == contact {
+            continue;
+        }
+        let p_there = inverse_point(pose_at(other, share), p);
+        if solid_depth(contacts[other].solid, p_there) > tick.cover_m {
+            return true;
+        }
+    }
+    return false;
+}
+
+// The way out of a closed form for a point inside. `kept` is the feature of the last sub-step or
+// NO_FACE.
+fn solid_exit(contact: u32, pose: Pose, share: f32, p: vec3f, kept: u32, reach: Reach) -> Exit {
+    let solid = contacts[contact].solid;
+    var choice = no_choice();
+    for (var face = 0u; face < face_count(solid); face++) {
+        let found = solid_face(solid, p, face);
+        if found.w <= 0.0 {
+            return outside();
+        }
+        let exit = Exit(found.w, found.xyz, face);
+        let end = rotate(pose.turn, p + found.xyz * found.w) + pose.place;
+        offer(&choice, p, kept, reach, exit, is_covered(contact, share, end));
+    }
+    return take(choice);
+}
+
+// The way out of the part at a share of the sub-step, in its pose of then, for a vertex with a memory
+// of its last face. `reach` is the vertex's segment in the anchor's coordinates.
+fn way_out(
+    contact: u32,
+    pose: Pose,
+    share: f32,
+    vertex: vec3f,
+    memory: u32,
+    reach: Reach,
+) -> Exit {
     let p = inverse_point(pose, vertex);
     let segment = Reach(
         inverse_point(pose, reach.start),
@@ -91,5 +136,5 @@ fn way_out(contact: u32, pose: Pose, vertex: vec3f, memory: u32, reach: Reach) -
     if contacts[contact].uses_cube != 0u {
         return cube_exit(contacts[contact].solid, p, kept, segment);
     }
-    return solid_exit(contacts[contact].solid, p, kept, segment);
+    return solid_exit(contact, pose, share, p, kept, segment);
 }

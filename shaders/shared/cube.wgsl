@@ -60,7 +60,7 @@ fn cube_sample(solid: SolidRecord, p: vec3f, face: u32) -> CubeSample {
         return sample;
     }
     sample.hit = true;
-    sample.hidden = hidden * 2.0 > weight;
+    sample.hidden = hidden > HIDDEN_SHARE * weight;
     sample.behind = distance / weight;
     sample.normal = unit_or(normal, face_normal(face));
     return sample;
@@ -96,7 +96,7 @@ fn cube_exit(solid: SolidRecord, p: vec3f, kept: u32, reach: Reach) -> Exit {
             return outside();
         }
         let exit = Exit(sample.behind, sample.normal, face);
-        offer(&choice, p, kept, reach, exit, select(0.0, HIDDEN_M, sample.hidden));
+        offer(&choice, p, kept, reach, exit, sample.hidden);
     }
     return take(choice);
 }

@@ -72,16 +72,16 @@ fn no_choice() -> Choice {
     return Choice(outside(), 0.0, outside(), 0.0, outside(), 0.0);
 }
 
-// `surcharge` is added to what the way costs.
+// A `hidden` way ends in another part of the body.
 fn offer(
     choice: ptr<function, Choice>,
     p: vec3f,
     kept: u32,
     reach: Reach,
     exit: Exit,
-    surcharge: f32,
+    hidden: bool,
 ) {
-    let price = cost(reach, p, exit.depth, exit.normal) + surcharge;
+    let price = cost(reach, p, exit.depth, exit.normal) + select(0.0, HIDDEN_M, hidden);
     if exit.face == kept {
         (*choice).keep = exit;
         (*choice).keep_cost = price;
@@ -91,7 +91,7 @@ fn offer(
         (*choice).least = price;
     }
     let cheaper = (*choice).back.face == NO_FACE || price < (*choice).back_cost;
-    if price < OUT_OF_REACH_M && cheaper && came_through(reach, p, exit) {
+    if price < HIDDEN_M && cheaper && came_through(reach, p, exit) {
         (*choice).back = exit;
         (*choice).back_cost = price;
     }
@@ -179,18 +179,4 @@ fn solid_depth(solid: SolidRecord, p: vec3f) -> f32 {
         least = min(least, solid_face(solid, p, face).w);
     }
     return least;
-}
-
-// The way out for a point inside. `kept` is the feature of the last sub-step or NO_FACE.
-fn solid_exit(solid: SolidRecord, p: vec3f, kept: u32, reach: Reach) -> Exit {
-    var choice = no_choice();
-    for (var face = 0u; face < face_count(solid); face++) {
-        let found = solid_face(solid, p, face);
-        if found.w <= 0.0 {
-            return outside();
-        }
-        let exit = Exit(found.w, found.xyz, face);
-        offer(&choice, p, kept, reach, exit, 0.0);
-    }
-    return take(choice);
 }

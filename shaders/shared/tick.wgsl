@@ -18,7 +18,9 @@ struct TickUniform {
     // Most sweeps in a turn of either pass.
     collide_sweeps: u32,
     relax_sweeps: u32,
-    spare: vec2u,
+    // A point this deep in a part with its skin is in the part.
+    cover_m: f32,
+    spare: u32,
     // The wind at the start of the sub-step.
     wind_before: WindUniform,
 }

@@ -32,7 +32,8 @@ gpu_struct! {
         pub strain_limit: f32,
         pub collide_sweeps: u32,
         pub relax_sweeps: u32,
-        pub spare: [u32; 2],
+        pub cover_m: f32,
+        pub spare: u32,
         pub wind_before: WindUniform,
     }
 }
@@ -65,7 +66,9 @@ gpu_struct! {
         pub key: u32,
         pub uses_cube: u32,
         pub hold_m: f32,
-        pub spare: u32,
+        pub part_in_body: u32,
+        pub parts_of_body: u32,
+        pub spare: [u32; 3],
         pub solid: SolidRecord,
     }
 }
@@ -108,7 +111,8 @@ impl TickUniform {
             strain_limit: settings.strain_limit,
             collide_sweeps: turns.collide.sweeps,
             relax_sweeps: turns.relax.sweeps,
-            spare: [0; 2],
+            cover_m: settings.cover_m,
+            spare: 0,
             wind_before: (&meadow.work.wind_before).into(),
         }
     }
@@ -170,7 +174,9 @@ impl ContactRecord {
             key: memory_key(contact),
             uses_cube: u32::from(uses_cube),
             hold_m: hold_m(solid, uses_cube),
-            spare: 0,
+            part_in_body: contact.part_in_body,
+            parts_of_body: contact.parts_of_body,
+            spare: [0; 3],
             solid: *solid,
         }
     }

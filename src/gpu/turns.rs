@@ -13,7 +13,7 @@ use super::{Gpu, GpuError};
 use crate::sim::Meadow;
 use crate::sim::fault::Fault;
 use crate::sim::parts::Tested;
-use crate::sim::relax::SPRING_TRIES;
+use crate::sim::relax::{LOOKS, SPRING_TRIES};
 use crate::sim::work::Contact;
 
 /// Most times that all loops of a dispatch together go round: less than half the driver's limit, since
@@ -47,7 +47,14 @@ impl PassTurns {
     /// Those of the meadow's current sub-step.
     pub fn new(meadow: &Meadow) -> Self {
         let solver = &meadow.scene.solver;
-        let (sweeps, per_node) = (most_sweeps(meadow), loops_per_node(meadow));
+        let sweeps = most_sweeps(meadow);
+        let per_test = loops_per_node(meadow, |contacts| {
+            contacts
+                .iter()
+                .map(|contact| test_loops(meadow, contact))
+                .sum()
+        });
+        let per_exit = loops_per_node(meadow, |contacts| exit_loops(meadow, contacts));
         let segments = u64::from(solver.segments);
         // The push, the springs' tries, and the rounds.
         let rounds = u64::from(solver.rounds[1] + SPRING_TRIES) + 2;
@@ -58,8 +65,8 @@ impl PassTurns {
             };
         }
         Self {
-            collide: Turns::new(sweeps, segments * per_node),
-            relax: Turns::new(sweeps, rounds * segments * (per_node + LOOPS_OVER_SEGMENTS)),
+            collide: Turns::new(sweeps, segments * per_test),
+            relax: Turns::new(sweeps, rounds * segments * (per_exit + LOOPS_OVER_SEGMENTS)),
         }
     }
 }
@@ -81,18 +88,44 @@ fn most_sweeps(meadow: &Meadow) -> u32 {
     contacts.map(|contact| contact.sweeps).max().unwrap_or(0)
 }
 
-/// Loops that a node takes to meet every part near its tile once, where they are most.
-fn loops_per_node(meadow: &Meadow) -> u64 {
-    let of_part = |contact: &Contact| match contact.tested {
-        Tested::Cube => CUBE_LOOPS + OTHER_LOOPS,
-        _ => {
-            let part = &meadow.parts.parts[contact.part as usize];
-            u64::from(part.grown.feature_count()) + 1 + OTHER_LOOPS
-        }
-    };
+/// Loops that a node takes for all parts near its tile, where they are most.
+fn loops_per_node(meadow: &Meadow, of_tile: impl Fn(&[Contact]) -> u64) -> u64 {
     let tiles = meadow.work.tiles.iter();
-    let sums = tiles.map(|tile| meadow.work.contacts_of(tile).iter().map(of_part).sum());
-    sums.max().unwrap_or(0)
+    let loops = tiles.map(|tile| of_tile(meadow.work.contacts_of(tile)));
+    loops.max().unwrap_or(0)
+}
+
+/// Loops that tell whether a node is in a part.
+fn test_loops(meadow: &Meadow, contact: &Contact) -> u64 {
+    match contact.tested {
+        Tested::Cube => CUBE_LOOPS + OTHER_LOOPS,
+        _ => features(meadow, contact) + 1 + OTHER_LOOPS,
+    }
+}
+
+fn features(meadow: &Meadow, contact: &Contact) -> u64 {
+    let part = &meadow.parts.parts[contact.part as usize];
+    u64::from(part.grown.feature_count())
+}
+
+/// Loops that look for a node's way out of the parts near a tile: the end of each way out of a closed
+/// form is looked for in the body's other parts, and all parts but one are asked again where that one
+/// has turned a segment.
+fn exit_loops(meadow: &Meadow, contacts: &[Contact]) -> u64 {
+    let of_part = |(number, contact): (usize, &Contact)| {
+        let first = number - contact.part_in_body as usize;
+        let body = &contacts[first..first + contact.parts_of_body as usize];
+        let others: u64 = body.iter().map(|other| 2 + features(meadow, other)).sum();
+        let covered = match contact.tested {
+            Tested::Cube => 0,
+            _ if body.len() == 1 => 1,
+            _ => features(meadow, contact) * (1 + others),
+        };
+        test_loops(meadow, contact) + covered
+    };
+    let looks = if contacts.len() > 1 { LOOKS } else { 1 };
+    let once: u64 = contacts.iter().enumerate().map(of_part).sum();
+    once * looks as u64
 }
 
 /// The kernel that goes on to the next turn.

@@ -21,10 +21,10 @@ use crate::field::pose::{MAX_NODES, MAX_SEGMENTS};
 use crate::field::wind::WAVES;
 use crate::sim::collide::PINNED_M;
 use crate::sim::contact::FACE_MASK;
-use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIDDEN_M, HIT, LEAST_WEIGHT};
+use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIDDEN_SHARE, HIT, LEAST_WEIGHT};
 use crate::sim::recover::ASIDE;
-use crate::sim::relax::{ON_GROUND_M, SPRING_TRIES, STICKS};
-use crate::sim::solid::{CAME_THROUGH_M, KEEP_FACE, NO_FACE, OPPOSITE, OUT_OF_REACH_M};
+use crate::sim::relax::{LOOKS, ON_GROUND_M, SPRING_TRIES, STICKS};
+use crate::sim::solid::{CAME_THROUGH_M, HIDDEN_M, KEEP_FACE, NO_FACE, OPPOSITE, OUT_OF_REACH_M};
 
 /// A WGSL file, embedded, with the Rust constants it uses.
 #[derive(Clone, Copy, Debug)]
@@ -122,7 +122,7 @@ pub const SHARED: &[WgslFile] = &[
     wgsl_file!(
         "shared/cube.wgsl",
         HIDDEN,
-        HIDDEN_M,
+        HIDDEN_SHARE,
         HIT,
         LEAST_WEIGHT,
         NO_FACE
@@ -145,6 +145,7 @@ pub const SHARED: &[WgslFile] = &[
     wgsl_file!(
         "shared/solid.wgsl",
         CAME_THROUGH_M,
+        HIDDEN_M,
         KEEP_FACE,
         NO_FACE,
         OPPOSITE,
@@ -178,6 +179,7 @@ pub const PASSES: &[WgslFile] = &[
     wgsl_file!(
         "relax.wgsl",
         FACE_MASK,
+        LOOKS,
         MAX_NODES,
         MAX_SEGMENTS,
         MOST_GROUPS,

@@ -2,6 +2,8 @@
 //!
 //! WGSL twin: `shaders/shared/contact.wgsl`.
 
+use std::ops::Range;
+
 use crate::base::{Pose, Real, Vec3};
 
 use super::depth_cube::DepthCube;
@@ -20,9 +22,38 @@ pub struct Touch<'a, R> {
     /// A vertex that was pushed before is held while it is no farther off, in metres.
     hold_m: R,
     grown: &'a Solid<R>,
+    /// Place in the tile's list, and the places of all parts of the same body.
+    number: usize,
+    body: Range<usize>,
     /// Body and part, in the upper bits of a vertex's memory of its face.
     key: u32,
     collider: ColliderOf<'a, R>,
+}
+
+/// The parts near a tile at one instant of a sub-step.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a, R> {
+    pub touches: &'a [Touch<'a, R>],
+    /// Share of the sub-step.
+    pub share: R,
+    /// A point this deep in a grown part is inside the part, in metres.
+    pub cover_m: R,
+}
+
+impl<'a, R: Real> Moment<'a, R> {
+    /// `anchor_from_part` of a touch.
+    pub fn pose_of(&self, touch: &Touch<R>) -> Pose<R> {
+        touch.from.lerp(touch.to, self.share)
+    }
+
+    /// True where a point of the anchor's space is in another part of a touch's body.
+    fn is_covered(&self, touch: &Touch<R>, p: Vec3<R>) -> bool {
+        let others = touch.body.clone().filter(|&n| n != touch.number);
+        others.into_iter().any(|n| {
+            let other = &self.touches[n];
+            other.grown.depth(self.pose_of(other).inverse_point(p)) > self.cover_m
+        })
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -50,9 +81,10 @@ pub const FACE_MASK: u32 = (1 << FACE_BITS) - 1;
 const PART_BITS: u32 = 8;
 
 impl<'a, R: Real> Touch<'a, R> {
-    /// Prepares a contact. A part whose cube is not drawn yet is tested by its closed form.
-    /// `grown` is the part's solid with the skin, in the engine's float.
-    pub fn new(contact: &Contact, part: &'a Part, grown: &'a Solid<R>) -> Self {
+    /// Prepares the contact at place `number` of a tile's list. A part whose cube is not drawn yet is
+    /// tested by its closed form. `grown` is the part's solid with the skin, in the engine's float.
+    pub fn new(number: usize, contact: &Contact, part: &'a Part, grown: &'a Solid<R>) -> Self {
+        let first = number - contact.part_in_body as usize;
         let collider = match (contact.tested, &part.cube, &part.voxels) {
             (Tested::Cube, Some(cube), _) => ColliderOf::Cube(cube),
             (Tested::Voxels, _, Some(voxels)) => ColliderOf::Voxels(voxels),
@@ -65,6 +97,8 @@ impl<'a, R: Real> Touch<'a, R> {
             sweeps: contact.sweeps,
             hold_m: R::of(hold_m(part, contact.tested)),
             grown,
+            number,
+            body: first..first + contact.parts_of_body as usize,
             key: memory_key(contact),
             collider,
         }
@@ -106,6 +140,7 @@ impl<'a, R: Real> Touch<'a, R> {
     /// segment's reach count.
     pub fn exit(
         &self,
+        moment: &Moment<R>,
         pose: &Pose<R>,
         vertex: Vec3<R>,
         memory: &mut u32,
@@ -124,7 +159,9 @@ impl<'a, R: Real> Touch<'a, R> {
         };
         let exit = match self.collider {
             ColliderOf::Cube(cube) => cube.exit(p, kept, &reach),
-            ColliderOf::Analytic(solid) => solid.exit(p, kept, &reach),
+            ColliderOf::Analytic(solid) => solid.exit(p, kept, &reach, |end| {
+                moment.is_covered(self, pose.point(end))
+            }),
             ColliderOf::Voxels(voxels) => voxels.exit(p),
         }?;
         *memory = self.key | ((exit.face + 1) & FACE_MASK);

@@ -318,9 +318,10 @@ fn touches_of<'a, R: Real>(
         .work
         .contacts_of(tile)
         .iter()
-        .map(|contact| {
+        .enumerate()
+        .map(|(number, contact)| {
             let part = contact.part as usize;
-            Touch::new(contact, &meadow.parts.parts[part], &grown[part])
+            Touch::new(number, contact, &meadow.parts.parts[part], &grown[part])
         })
         .collect()
 }

@@ -36,11 +36,13 @@ pub const HIT: u32 = 1 << 31;
 pub const HIDDEN: u32 = 1 << 30;
 /// Depth is stored as a fraction of the face's extent in units of 2⁻²⁹.
 pub const DEPTH_STEPS: f64 = 536_870_912.0;
-/// A way out through a hidden face counts as longer by this, in metres: more than any body's size.
-pub const HIDDEN_M: f64 = 1000.0;
 /// A surface point this deep inside a neighbouring part is hidden, in metres: faces that merely
 /// meet do not hide each other.
 pub const COVER_MARGIN_M: f64 = 1e-4;
+/// A surface is hidden where more than this share of its texels is. One that is hidden in part borders on
+/// the inner corner of a body: to take it for hidden would leave a node in the corner without a way out,
+/// to take it for open costs it a texel at most, out of which the neighbour pushes it.
+pub const HIDDEN_SHARE: f64 = 0.99;
 const DEPTH_MASK: u32 = HIDDEN - 1;
 /// Weight of the texels that were hit below which a point is outside a face's silhouette: it keeps
 /// the division by it away from rounding.
@@ -150,12 +152,7 @@ impl DepthCube {
                 normal,
                 face,
             };
-            let surcharge = if surface.hidden {
-                R::of(HIDDEN_M)
-            } else {
-                R::ZERO
-            };
-            choice.offer(exit, surcharge);
+            choice.offer(exit, surface.hidden);
         }
         choice.take()
     }
@@ -232,7 +229,7 @@ impl DepthCube {
             },
             along_axis,
             normal: normal.unit_or(face_normal(face)),
-            hidden: hidden * R::of(2.0) > weight,
+            hidden: hidden > R::of(HIDDEN_SHARE) * weight,
         })
     }
 }

@@ -14,15 +14,22 @@
 //! k·Δt, which does not. Springs act only on plants pushed in this sub-step: one that a resting body merely holds
 //! stays as it is, so nothing trembles. WGSL twin: `shaders/relax.wgsl`.
 
+mod bends;
+
 use crate::base::{Pose, Real, Vec3, vec3};
 use crate::field::grid::{GroundPlane, ground_plane_in_anchor};
 use crate::field::{Anchor, Nodes};
 use crate::scene::method::{Collide, Springs};
 use crate::terrain::HeightGrid;
 
-use super::contact::{Laid, Touch};
+use super::contact::{Laid, Moment, Touch};
+use super::depth_cube::COVER_MARGIN_M;
 use super::fault::{Fault, Planted};
-use super::springs::{self, LiteralBlade, relax_blade};
+use super::solid::Exit;
+use super::springs::{LiteralBlade, relax_blade};
+use bends::bend_springs;
+
+pub use bends::SPRING_TRIES;
 
 /// A body whose surface makes less than 45° with the ground (this cosine) holds what it presses onto
 /// it; a steeper one pushes it along. A wedge holds what rubs against both its sides with a friction
@@ -43,6 +50,8 @@ pub struct RelaxSettings<R> {
     pub strain_limit: R,
     /// Rounds go on, up to the most, while one still moved a node out of a body.
     pub until_clear: bool,
+    /// A point this deep in a part with its skin is in the part, in metres.
+    pub cover_m: R,
     pub planted: Planted,
 }
 
@@ -57,6 +66,7 @@ impl<R: Real> RelaxSettings<R> {
             most_rounds: solver.rounds[1],
             strain_limit: R::of_f32(solver.strain_limit),
             until_clear: solver.method.collide == Collide::Exact,
+            cover_m: R::of_f32((COVER_MARGIN_M + f64::from(solver.skin_m)) as f32),
             planted: Planted::default(),
         }
     }
@@ -85,6 +95,7 @@ pub fn sweeps_for<R: Real>(touches: &[Touch<R>], root: Vec3<R>, reach: R) -> u32
 
 /// The bodies around a plant at one instant of a sub-step.
 struct Bodies<'a, R> {
+    moment: Moment<'a, R>,
     /// Touches that reach the plant, with their `anchor_from_part` of this instant.
     posed: Vec<(&'a Touch<'a, R>, Pose<R>)>,
 }
@@ -103,7 +114,12 @@ pub fn respond<R: Real>(
     let mut rounds_used = 0;
     for sweep in 1..=sweeps {
         let share = R::of(f64::from(sweep)) / R::of(f64::from(sweeps));
-        let bodies = Bodies::at(touches, share, nodes[0], reach);
+        let moment = Moment {
+            touches,
+            share,
+            cover_m: settings.cover_m,
+        };
+        let bodies = Bodies::at(moment, nodes[0], reach);
         if !bodies.push_out(nodes, faces, place) {
             continue;
         }
@@ -133,12 +149,11 @@ pub fn respond<R: Real>(
 }
 
 impl<'a, R: Real> Bodies<'a, R> {
-    fn at(touches: &'a [Touch<'a, R>], share: R, root: Vec3<R>, reach: R) -> Self {
-        let near = touches.iter().filter(|touch| touch.reaches(root, reach));
+    fn at(moment: Moment<'a, R>, root: Vec3<R>, reach: R) -> Self {
+        let near = (moment.touches.iter()).filter(|touch| touch.reaches(root, reach));
         Self {
-            posed: near
-                .map(|touch| (touch, touch.from.lerp(touch.to, share)))
-                .collect(),
+            posed: near.map(|touch| (touch, moment.pose_of(touch))).collect(),
+            moment,
         }
     }
 
@@ -149,7 +164,7 @@ impl<'a, R: Real> Bodies<'a, R> {
         for (touch, pose) in &self.posed {
             for (j, face) in faces.iter_mut().enumerate() {
                 let node = nodes[j + 1];
-                let Some(exit) = touch.exit(pose, node, face, None) else {
+                let Some(exit) = touch.exit(&self.moment, pose, node, face, None) else {
                     continue;
                 };
                 let out = node + exit.normal * exit.depth;
@@ -168,7 +183,8 @@ impl<'a, R: Real> Bodies<'a, R> {
 
     /// Turns a segment about its lower node until its upper one is out of every part, where its
     /// length allows that: both constraints hold after one step, which pushing and restoring
-    /// lengths in turn reaches slowly where a blade meets a body head on.
+    /// lengths in turn reaches slowly where a blade meets a body head on. The way out of one part may
+    /// lead into an earlier one, in the inner corner of a body above all: those are asked once more.
     fn turn_out(
         &self,
         laid: &Laid<R>,
@@ -177,35 +193,29 @@ impl<'a, R: Real> Bodies<'a, R> {
         face: &mut u32,
         place: &Place<R>,
     ) -> (Vec3<R>, bool) {
-        let from = laid.from;
         let mut to = to;
-        let mut turned = false;
-        for (touch, pose) in &self.posed {
-            let Some(exit) = touch.exit(pose, to, face, Some(laid)) else {
+        let mut turned_at = None;
+        let parts = self.posed.len();
+        for (step, (touch, pose)) in self.posed.iter().cycle().take(LOOKS * parts).enumerate() {
+            if step >= parts && turned_at.is_none_or(|at| step - at >= parts) {
+                break;
+            }
+            let Some(exit) = touch.exit(&self.moment, pose, to, face, Some(laid)) else {
                 continue;
             };
-            let n = exit.normal;
-            let along = (to - from).dot(n);
-            let rise = along + exit.depth;
-            let run = place.length * place.length - rise * rise;
-            if run <= R::ZERO {
-                continue;
-            }
-            let sideways = (rest - n * rest.dot(n)).unit_or(across(n));
-            let flat = ((to - from) - n * along).unit_or(sideways);
-            let out = from + n * rise + flat * run.sqrt();
-            if !place.is_pressed(out, n) {
+            if let Some(out) = place.turned_out(laid.from, to, rest, &exit) {
                 to = out;
-            } else if place.is_on_ground(to) {
-                continue;
-            } else {
-                to = place.turn_to(from, to, &place.plane_below(to), rest);
+                turned_at = Some(step);
             }
-            turned = true;
         }
-        (to, turned)
+        (to, turned_at.is_some())
     }
 }
+
+/// How often a segment that is laid out asks the parts, the later times only those that it has not
+/// asked since one turned it. In a corner the ways out of two parts lead into each other a few times,
+/// less far every time.
+pub const LOOKS: usize = 4;
 
 /// Some unit vector at right angles to a unit vector.
 pub(super) fn across<R: Real>(n: Vec3<R>) -> Vec3<R> {
@@ -215,91 +225,6 @@ pub(super) fn across<R: Real>(n: Vec3<R>) -> Vec3<R> {
         vec3(R::ZERO, R::ZERO, R::ONE)
     };
     (axis - n * n.dot(axis)).unit_or(Vec3::UP)
-}
-
-/// Springs of the blade's bends: all of them by 2a, or by half, a quarter or an eighth of it where more
-/// would raise their energy ½Σ(‖l‖ − l₀)² once the lengths are back; not at all where that would too.
-/// `rate` is κΔt.
-fn bend_springs<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, rate: R, planted: Planted) {
-    let before = laid_energy(nodes, place, R::ZERO);
-    let mut share = R::of(2.0) * rate / (R::ONE + R::of(2.0) * rate);
-    for _ in 0..SPRING_TRIES {
-        if planted.is(Fault::RootWeight) || laid_energy(nodes, place, share) <= before {
-            pull_bends(nodes, place, share, planted);
-            return;
-        }
-        share *= R::of(0.5);
-    }
-}
-
-/// Shares of a spring step that are tried.
-pub const SPRING_TRIES: u32 = 4;
-
-/// What the bend spring from node j to node j + 2 moves its lower end by, and its upper one against.
-fn bend_moves<R: Real>(
-    j: usize,
-    [lower, upper]: [Vec3<R>; 2],
-    place: &Place<R>,
-    share: R,
-    is_root: bool,
-) -> [Vec3<R>; 2] {
-    let rest = (place.wind[j + 2] - place.wind[j]).length();
-    let across = upper - lower;
-    let correction = across.unit_or(Vec3::UP) * (share * (across.length() - rest));
-    springs::shares([is_root, false]).map(|weight| correction * R::of(weight))
-}
-
-fn pull_bends<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, share: R, planted: Planted) {
-    for j in 0..place.segments.saturating_sub(1) {
-        let is_root = j == 0 && !planted.is(Fault::RootWeight);
-        let [lower, upper] = bend_moves(j, [nodes[j], nodes[j + 2]], place, share, is_root);
-        nodes[j] += lower;
-        nodes[j + 2] -= upper;
-    }
-}
-
-/// The bend springs' energy after they have been pulled by a share and the lengths were restored, in
-/// m². Neither is done to the nodes: a spring changes its own ends alone, so that three nodes at a
-/// time are enough.
-fn laid_energy<R: Real>(nodes: &Nodes<R>, place: &Place<R>, share: R) -> R {
-    let mut laid = Bends {
-        place,
-        last: [nodes[0]; 2],
-        energy: R::ZERO,
-    };
-    let (mut lower, mut middle) = (nodes[0], nodes[1]);
-    for j in 0..place.segments.saturating_sub(1) {
-        let [down, up] = bend_moves(j, [lower, nodes[j + 2]], place, share, j == 0);
-        laid.add(j, lower + down);
-        (lower, middle) = (middle, nodes[j + 2] - up);
-    }
-    laid.add(place.segments - 1, lower);
-    laid.add(place.segments, middle);
-    laid.energy
-}
-
-/// A blade's nodes, laid out from the root one after the other.
-struct Bends<'a, R> {
-    place: &'a Place<'a, R>,
-    /// The last node but one, and the last.
-    last: [Vec3<R>; 2],
-    energy: R,
-}
-
-impl<R: Real> Bends<'_, R> {
-    fn add(&mut self, j: usize, node: Vec3<R>) {
-        if j == 0 {
-            return;
-        }
-        let (wind, [before, from]) = (self.place.wind, self.last);
-        let rest = (wind[j] - wind[j - 1]).unit_or(Vec3::UP);
-        let laid = from + (node - from).unit_or(rest) * self.place.length;
-        if j >= 2 {
-            let longer = (laid - before).length() - (wind[j] - wind[j - 2]).length();
-            self.energy += longer * longer;
-        }
-        self.last = [from, laid];
-    }
 }
 
 /// Moves nodes onto the rest length of their segments, from root to tip. A segment that would dip
@@ -349,6 +274,35 @@ impl<R: Real> Place<'_, R> {
         let steepness = R::ONE + slope[0] * slope[0] + slope[1] * slope[1];
         let into = slope[0] * normal.x + slope[1] * normal.z - normal.y;
         into > R::of(STICKS) * steepness.sqrt() && out.y < height
+    }
+
+    /// The upper node of a segment, turned about the lower one until it is at the end of a way out of
+    /// a part, or of the way between the part and the ground; `None` where it is too short for that,
+    /// or lies there already.
+    fn turned_out(
+        &self,
+        from: Vec3<R>,
+        to: Vec3<R>,
+        rest: Vec3<R>,
+        exit: &Exit<R>,
+    ) -> Option<Vec3<R>> {
+        let n = exit.normal;
+        let along = (to - from).dot(n);
+        let rise = along + exit.depth;
+        let run = self.length * self.length - rise * rise;
+        if run <= R::ZERO {
+            return None;
+        }
+        let sideways = (rest - n * rest.dot(n)).unit_or(across(n));
+        let flat = ((to - from) - n * along).unit_or(sideways);
+        let out = from + n * rise + flat * run.sqrt();
+        if !self.is_pressed(out, n) {
+            Some(out)
+        } else if self.is_on_ground(to) {
+            None
+        } else {
+            Some(self.turn_to(from, to, &self.plane_below(to), rest))
+        }
     }
 
     fn is_on_ground(&self, node: Vec3<R>) -> bool {

@@ -74,6 +74,9 @@ pub struct Reach<R> {
 
 /// A way out of reach counts as longer by this, in metres: more than any body's size.
 pub const OUT_OF_REACH_M: f64 = 1000.0;
+/// A way out that ends in another part of the body counts as longer by this, in metres: more than any
+/// open way, less than one out of reach, which would leave the node where it is.
+pub const HIDDEN_M: f64 = 300.0;
 
 impl<R: Real> Reach<R> {
     /// Everything can be reached.
@@ -238,15 +241,37 @@ impl<R: Real> Solid<R> {
     }
 
     /// The way out for a point inside, or `None` outside. `kept` is the feature of the last
-    /// sub-step or [`NO_FACE`].
-    pub fn exit(&self, p: Vec3<R>, kept: u32, reach: &Reach<R>) -> Option<Exit<R>> {
+    /// sub-step or [`NO_FACE`]. `covered` says whether a point is in another part of the body.
+    pub fn exit(
+        &self,
+        p: Vec3<R>,
+        kept: u32,
+        reach: &Reach<R>,
+        covered: impl Fn(Vec3<R>) -> bool,
+    ) -> Option<Exit<R>> {
         match self {
             Self::Union(members) => whole::exit(members, p, kept, reach),
             Self::Mesh { mesh, skin } => whole::mesh_exit(mesh, p, *skin),
-            _ => nearest(self.feature_count(), Choice::new(p, kept, reach), |face| {
-                self.feature(p, face)
-            }),
+            _ => self.nearest(Choice::new(p, kept, reach), covered),
         }
+    }
+
+    /// The cheapest way out through a feature; a point in front of one of them is outside.
+    fn nearest(&self, mut choice: Choice<R>, covered: impl Fn(Vec3<R>) -> bool) -> Option<Exit<R>> {
+        let p = choice.p;
+        for face in 0..self.feature_count() {
+            let (depth, normal) = self.feature(p, face);
+            if depth <= R::ZERO {
+                return None;
+            }
+            let exit = Exit {
+                depth,
+                normal,
+                face,
+            };
+            choice.offer(exit, covered(p + normal * depth));
+        }
+        choice.take()
     }
 
     /// Features of a convex solid that a way out may lead through.
@@ -309,27 +334,6 @@ impl<R: Real> Solid<R> {
     }
 }
 
-/// The cheapest of `count` features that all have the point on their inner side.
-fn nearest<R: Real>(
-    count: u32,
-    mut choice: Choice<R>,
-    feature: impl Fn(u32) -> (R, Vec3<R>),
-) -> Option<Exit<R>> {
-    for face in 0..count {
-        let (depth, normal) = feature(face);
-        if depth <= R::ZERO {
-            return None;
-        }
-        let exit = Exit {
-            depth,
-            normal,
-            face,
-        };
-        choice.offer(exit, R::ZERO);
-    }
-    choice.take()
-}
-
 /// The cheapest way out among those offered, or the kept one while no other is clearly cheaper. A
 /// node that a segment's length has drawn into a body does not leave it on the far side while it
 /// can go back where it came in: it would have gone through.
@@ -355,8 +359,9 @@ impl<'a, R: Real> Choice<'a, R> {
         }
     }
 
-    /// `surcharge` is added to what the way costs.
-    pub fn offer(&mut self, exit: Exit<R>, surcharge: R) {
+    /// A `hidden` way ends in another part of the body.
+    pub fn offer(&mut self, exit: Exit<R>, hidden: bool) {
+        let surcharge = R::of(if hidden { HIDDEN_M } else { 0.0 });
         let cost = self.reach.cost(self.p, exit.depth, exit.normal) + surcharge;
         let is_less = |than: &Option<(R, Exit<R>)>| than.is_none_or(|(least, _)| cost < least);
         if exit.face == self.kept {
@@ -365,7 +370,7 @@ impl<'a, R: Real> Choice<'a, R> {
         if is_less(&self.best) {
             self.best = Some((cost, exit));
         }
-        let is_open = cost < R::of(OUT_OF_REACH_M);
+        let is_open = cost < R::of(HIDDEN_M);
         if is_open && is_less(&self.back) && self.reach.came_through(self.p, &exit) {
             self.back = Some((cost, exit));
         }

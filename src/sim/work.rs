@@ -42,6 +42,8 @@ pub struct Contact {
     pub body: u32,
     /// Number of the contact's part within its body, to tell its faces from another part's.
     pub part_in_body: u32,
+    /// Parts of the body, which follow one another in the list.
+    pub parts_of_body: u32,
     pub tested: Tested,
     /// Index into [`Bodies::links`](crate::bodies::Bodies::links).
     pub link: u32,
@@ -231,6 +233,7 @@ impl Work {
                     part: part as u32,
                     body: link.body,
                     part_in_body: (part - range.start) as u32,
+                    parts_of_body: range.len() as u32,
                     tested: parts.tested(part, link.collider, solver),
                     link: mover.number,
                     shape: link.shape,

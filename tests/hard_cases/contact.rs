@@ -97,8 +97,11 @@ fn rest(setting: &Setting, scene: &str) -> Measured {
         format!("only {compared} plants seen at rest")
     })?;
     let shallow = setting.collider != Collider::Analytic || depth_m <= REST_DEPTH_M;
-    let rests = largest_m <= REST_M_PER_FRAME && strain <= REST_STRAIN && shallow;
-    ensure(rests, || text.clone())?;
+    ensure(strain <= REST_STRAIN, || format!("strained: {text}"))?;
+    ensure(shallow, || format!("sunk in: {text}"))?;
+    ensure(largest_m <= REST_M_PER_FRAME, || {
+        format!("restless: {text}")
+    })?;
     rig.nothing_is_inside()?;
     Ok(text)
 }

@@ -48,7 +48,7 @@ const PLANTINGS: &[Planting] = &[
         mistake: Mistake::Method(|method| method.sampling = Sampling::Nearest),
         case: "rest_laid",
         collider: Collider::Cube,
-        says: "per frame",
+        says: "restless",
     },
     Planting {
         what: "springs_last",

@@ -11,6 +11,7 @@
 
 mod contact;
 mod faults;
+mod hollow;
 mod input;
 mod limits;
 mod long;
@@ -100,6 +101,7 @@ const CASES: &[Case] = &[
     case("plate", THIN, shapes::plate),
     case("rod", THIN, shapes::rod),
     case("cup", ALL, shapes::cup),
+    case("hollow", BOTH, hollow::moving),
     case("long", BOTH, long::short_form),
 ];
 

@@ -139,12 +139,15 @@ fn tip_times_s(setting: &Setting, substep_s: f64) -> Result<[f64; 3], Failed> {
 const TURNS_DEG: [f64; 4] = [90.0, 150.0, 179.9, 180.0];
 /// A blade is never shorter, in rest lengths.
 const LEAST_LENGTH: f64 = 0.99;
+/// Largest strain of a segment while its plant recovers.
+const STRAIN: f64 = 1e-3;
 
 /// Blades laid flat and turned over. Blending positions shortens them: by 29% at 90°, to nothing at
 /// 180°; and what then comes up on which side is up to rounding.
 pub fn flattened(setting: &Setting) -> Measured {
     let mut shortest = f64::INFINITY;
     let mut aside = f64::INFINITY;
+    let mut strain = 0.0_f64;
     let mut seen = 0;
     for degrees in TURNS_DEG {
         let mut rig = held_down(setting, CALM, 1.0 / 120.0)?;
@@ -158,6 +161,11 @@ pub fn flattened(setting: &Setting) -> Measured {
             for shown in shown(&mut rig, &state)? {
                 let segments = shown.nodes.len() - 1;
                 let lengths = (0..segments).map(|j| segment(&shown.nodes, j).length());
+                let rest = shown.height_m / segments as f64;
+                strain = lengths
+                    .clone()
+                    .map(|length| (length / rest - 1.0).abs())
+                    .fold(strain, f64::max);
                 let length = lengths.sum::<f64>() / shown.height_m;
                 ensure(length.is_finite(), || {
                     format!("{degrees}° age {age}: not finite")
@@ -172,11 +180,12 @@ pub fn flattened(setting: &Setting) -> Measured {
         }
     }
     let text = format!(
-        "length at least {shortest:.6} L (limit {LEAST_LENGTH}); turned right over, every segment \
+        "length at least {shortest:.6} L (limit {LEAST_LENGTH}), a segment's strain {strain:.1e} \
+         (limit {STRAIN}); turned right over, every segment \
          passes at least {aside:.1e} rad on its fixed side, {seen} poses"
     );
     ensure(
-        shortest >= LEAST_LENGTH && aside > 0.0 && seen > 1000,
+        shortest >= LEAST_LENGTH && strain <= STRAIN && aside > 0.0 && seen > 1000,
         || text.clone(),
     )?;
     Ok(text)
@@ -304,10 +313,16 @@ pub fn gusty(setting: &Setting) -> Measured {
     rig.look()?;
     let moved = bent_plants(&mut rig)?.len();
     let_go(&mut rig)?;
-    let released = rig.meadow.ticks;
+    rig.tick()?;
+    rig.seen = Default::default();
+    let released = rig.meadow.ticks - 1;
     let last = released + rig.meadow.recovery_ticks();
     rig.run_to(last - 1, 8)?;
     let plants = rig.look()?;
+    let strain = rig.seen.strain;
+    ensure(strain <= STRAIN, || {
+        format!("strain {strain} while recovering, limit {STRAIN}")
+    })?;
     let short = plants
         .values()
         .filter(|p| p.touched_at == released && p.nodes != p.wind)
@@ -327,7 +342,7 @@ pub fn gusty(setting: &Setting) -> Measured {
     drawn_as_untouched(&mut rig)?;
     Ok(format!(
         "{moved} plants bent, {short} of them off a tick before t = 0, none at t = 0: {} wind poses \
-         bit for bit",
+         bit for bit; strain {strain:.1e} while recovering (limit {STRAIN})",
         plants.len()
     ))
 }

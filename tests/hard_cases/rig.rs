@@ -105,6 +105,8 @@ pub struct Seen {
     /// Distance of a vertex from its root, in lengths of its blade.
     pub reach: f64,
     pub offset_m: f64,
+    /// Nodes of plants pushed in the sub-steps that were looked at.
+    pub pushed_nodes: u64,
 }
 
 /// A plant by its tile and its rank among the tile's plants.
@@ -197,6 +199,7 @@ impl Rig {
             .copied()
             .fold(seen.depth_m, f64::max);
         seen.strain = seen.strain.max(snapshot.max_strain);
+        seen.pushed_nodes += snapshot.pushed_nodes;
         seen.offset_m = seen.offset_m.max(snapshot.max_offset_m);
         let plants = self.plants()?;
         for (key, plant) in &plants {

@@ -57,27 +57,52 @@ impl Met {
 /// at most 0.42 m / 8 long, slips off the edge as a whole, and the body goes 25 mm.
 const EDGE_M: f64 = 0.42 / 8.0 + 0.025;
 
-/// How many nodes of a plant went through a body from one sub-step to the next, both in the body's
-/// coordinates.
-type Crossed<'a> = &'a dyn Fn(&[Vec3<f64>], &[Vec3<f64>]) -> usize;
+/// How many nodes or segments of a plant went through a body since the sub-step before, from its nodes of now
+/// in the body's coordinates.
+type Crossed<'a> = &'a mut dyn FnMut(PlantKey, &[Vec3<f64>]) -> usize;
 
-/// Where a vertex is relative to a plate across x: ahead of its face or behind it.
-fn side_of(p: Vec3<f64>, half: [f64; 3]) -> Option<bool> {
-    let c = p.to_f64();
-    let over_a_face = (1..3).all(|a| c[a].abs() < half[a] - EDGE_M);
-    let clear = c[0].abs() > half[0];
-    (over_a_face && clear).then_some(c[0] > 0.0)
+/// Where a vertex is relative to a plate across x.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Beside {
+    /// Not over its faces: it may come from either side.
+    Off,
+    /// Between the planes of its faces.
+    Within,
+    Ahead,
+    Behind,
 }
 
-/// Nodes that were over one face of a plate and are over the other.
-fn through_plate(before: &[Vec3<f64>], now: &[Vec3<f64>], half: [f64; 3]) -> usize {
-    let sides = before
-        .iter()
-        .zip(now)
-        .map(|(&b, &n)| [b, n].map(|p| side_of(p, half)));
-    sides
-        .filter(|[before, now]| before.is_some() && now.is_some() && before != now)
-        .count()
+fn beside(p: Vec3<f64>, half: [f64; 3]) -> Beside {
+    let c = p.to_f64();
+    if (1..3).any(|a| c[a].abs() >= half[a] - EDGE_M) {
+        Beside::Off
+    } else if c[0].abs() <= half[0] {
+        Beside::Within
+    } else if c[0] > 0.0 {
+        Beside::Ahead
+    } else {
+        Beside::Behind
+    }
+}
+
+/// The side each node of a plant was on last, since it came over the plate's faces.
+type Sides = BTreeMap<PlantKey, Vec<Beside>>;
+
+/// Nodes that were over one face of a plate and are over the other, however long they were within.
+fn through_plate(sides: &mut Sides, key: PlantKey, now: &[Vec3<f64>], half: [f64; 3]) -> usize {
+    let sides = sides
+        .entry(key)
+        .or_insert_with(|| vec![Beside::Off; now.len()]);
+    let mut crossed = 0;
+    for (side, &node) in sides.iter_mut().zip(now) {
+        let seen = beside(node, half);
+        let clear = |side| matches!(side, Beside::Ahead | Beside::Behind);
+        crossed += usize::from(clear(*side) && clear(seen) && *side != seen);
+        if seen != Beside::Within {
+            *side = seen;
+        }
+    }
+    crossed
 }
 
 /// Segments that swept over the axis of a rod along y. A rod has no two sides that a vertex could be
@@ -100,7 +125,6 @@ fn through_rod(before: &[Vec3<f64>], now: &[Vec3<f64>], half_m: f64) -> usize {
 /// Runs a passing body of one part and counts.
 fn pass_through(rig: &mut Rig, crossed: Crossed, ticks: u32) -> Result<Met, Failed> {
     let mut met = Met::default();
-    let mut before: BTreeMap<PlantKey, Vec<Vec3<f64>>> = BTreeMap::new();
     while rig.meadow.ticks < ticks {
         rig.tick()?;
         let snapshot = rig.engine.snapshot(&rig.meadow)?;
@@ -110,12 +134,9 @@ fn pass_through(rig: &mut Rig, crossed: Crossed, ticks: u32) -> Result<Met, Fail
             .iter()
             .filter(|&&depth| depth > 1e-3)
             .count() as u64;
-        let now = in_the_body(rig)?;
-        for (key, now) in &now {
-            let crossed = before.get(key).map_or(0, |before| crossed(before, now));
-            met.wrong_side += crossed as u64;
+        for (key, now) in in_the_body(rig)? {
+            met.wrong_side += crossed(key, &now) as u64;
         }
-        before = now;
     }
     Ok(met)
 }
@@ -163,8 +184,9 @@ pub fn plate(setting: &Setting) -> Measured {
     let shape = "Box(size_m: (0.01, 0.5, 0.6))";
     let mut rig = setting.rig(&passing(shape, [0.0, 0.0, -37.0], 0.24, setting))?;
     let half = [0.005, 0.25, 0.3];
-    let crossed = |before: &[_], now: &[_]| through_plate(before, now, half);
-    let met = pass_through(&mut rig, &crossed, 7 * SECOND_TICKS / 3)?;
+    let mut sides = Sides::new();
+    let mut crossed = |key, now: &[_]| through_plate(&mut sides, key, now, half);
+    let met = pass_through(&mut rig, &mut crossed, 7 * SECOND_TICKS / 3)?;
     told(&met, &rig)
 }
 
@@ -173,8 +195,12 @@ pub fn plate(setting: &Setting) -> Measured {
 pub fn rod(setting: &Setting) -> Measured {
     let shape = "Capsule(radius_m: 0.03, length_m: 1.94)";
     let mut rig = setting.rig(&passing(shape, [90.0, 20.0, 0.0], 0.15, setting))?;
-    let crossed = |before: &[_], now: &[_]| through_rod(before, now, 1.0);
-    let met = pass_through(&mut rig, &crossed, 7 * SECOND_TICKS / 3)?;
+    let mut before: BTreeMap<PlantKey, Vec<Vec3<f64>>> = BTreeMap::new();
+    let mut crossed = |key, now: &[Vec3<f64>]| {
+        let before = before.insert(key, now.to_vec());
+        before.map_or(0, |before| through_rod(&before, now, 1.0))
+    };
+    let met = pass_through(&mut rig, &mut crossed, 7 * SECOND_TICKS / 3)?;
     told(&met, &rig)
 }
 

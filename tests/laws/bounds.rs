@@ -93,7 +93,7 @@ fn ball_bounds_hold_every_plant_that_a_part_reaches() {
             &[&mover],
             Planted::NONE,
         );
-        let touch = Touch::new(&work.contacts[0], &meadow.parts.parts[0], grown);
+        let touch = Touch::new(0, &work.contacts[0], &meadow.parts.parts[0], grown);
         for _ in 0..20 {
             let root = [random(3.0), random(3.0), random(3.0)];
             let in_anchor = Vec3::of(root) - Vec3::<f64>::of(origin);

@@ -64,7 +64,7 @@ fn march(solid: &Solid<f32>, from: Vec3<f32>, along: Vec3<f32>) -> Option<(f32, 
         let outside = -solid.depth(p);
         if outside < NEAR_M {
             let below = p + along * (2.0 * NEAR_M);
-            let exit = solid.exit(below, NO_FACE, &Reach::anywhere());
+            let exit = solid.exit(below, NO_FACE, &Reach::anywhere(), |_| false);
             return Some((t, exit.map_or(-along, |exit| exit.normal)));
         }
         t += outside;

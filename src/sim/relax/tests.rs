@@ -5,6 +5,7 @@ use crate::base::philox::philox2x32;
 use crate::base::vec3;
 use crate::field::{Field, MAX_NODES};
 use crate::scene::{Grass, Solver};
+use crate::sim::springs;
 
 const SEGMENTS: usize = 8;
 /// Length of a segment, and the height of the root over a ground that no blade can reach, in metres.
@@ -47,7 +48,14 @@ fn extension<R: Real>(nodes: &Nodes<R>, wind: &Nodes<R>) -> f64 {
 
 /// One sweep without contacts: bend springs, then the fewest rounds of lengths and ground.
 fn sweep<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, rate: f64) {
-    let nothing = Bodies { posed: Vec::new() };
+    let nothing = Bodies {
+        moment: Moment {
+            touches: &[],
+            share: R::ONE,
+            cover_m: R::ZERO,
+        },
+        posed: Vec::new(),
+    };
     bend_springs(nodes, place, R::of(rate), Planted::NONE);
     for _ in 0..Solver::default().rounds[0] {
         lay_out(nodes, &mut [0; SEGMENTS], &nothing, place);

@@ -41,7 +41,7 @@ fn the_way_out_ends_on_the_surface() {
             let word = |salt: u32| crate::base::philox::philox2x32([k, salt], 3, 7)[0];
             let at = |salt: u32| f64::from(crate::base::philox::unit(word(salt))) - 0.5;
             let p = vec3(at(1), at(2), at(3));
-            let exit = solid.exit(p, NO_FACE, &Reach::anywhere());
+            let exit = solid.exit(p, NO_FACE, &Reach::anywhere(), |_| false);
             assert_eq!(exit.is_some(), solid.depth(p) > 0.0, "{solid:?} {p:?}");
             if let Some(exit) = exit {
                 inside += 1;
@@ -58,7 +58,9 @@ fn the_way_out_ends_on_the_surface() {
 fn centres_and_axes_have_a_finite_way_out() {
     for solid in solids() {
         for p in [Vec3::ZERO, vec3(0.0, 0.1, 0.0)] {
-            let exit = solid.exit(p, NO_FACE, &Reach::anywhere()).expect("inside");
+            let exit = solid
+                .exit(p, NO_FACE, &Reach::anywhere(), |_| false)
+                .expect("inside");
             assert!(exit.normal.is_finite() && (exit.normal.length() - 1.0).abs() < 1e-12);
         }
     }
@@ -77,7 +79,7 @@ fn a_way_out_must_be_in_the_segments_reach() {
             before: from,
         };
         plank
-            .exit(vec3(0.0, 0.0, 0.17), NO_FACE, &reach)
+            .exit(vec3(0.0, 0.0, 0.17), NO_FACE, &reach, |_| false)
             .map(|e| e.face)
     };
     assert_eq!(face(0.12), Some(4), "3 cm to the side");
@@ -94,7 +96,7 @@ fn a_face_is_kept_until_another_is_a_tenth_nearer() {
         half: vec3(1.0, 1.0, 1.0),
     };
     let face = |x: f64, kept| {
-        cube.exit(vec3(x, 0.5, 0.0), kept, &Reach::anywhere())
+        cube.exit(vec3(x, 0.5, 0.0), kept, &Reach::anywhere(), |_| false)
             .map(|e| e.face)
     };
     assert_eq!(face(0.51, NO_FACE), Some(0));
@@ -115,7 +117,7 @@ fn a_node_laid_into_a_body_goes_back_where_it_came_in() {
             length,
             before,
         };
-        plate.exit(p, NO_FACE, &reach).map(|e| e.face)
+        plate.exit(p, NO_FACE, &reach, |_| false).map(|e| e.face)
     };
     assert_eq!(face(vec3(0.006, 0.01, 0.0), 0.05), Some(0), "in front");
     assert_eq!(face(vec3(-0.006, 0.01, 0.0), 0.05), Some(1), "behind");

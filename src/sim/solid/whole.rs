@@ -117,17 +117,12 @@ pub(super) fn exit<R: Real>(
                     other != n
                         && member.solid.depth(member.pose.inverse_point(end)) > R::of(COVERED_M)
                 });
-                let surcharge = if covered {
-                    R::of(OUT_OF_REACH_M)
-                } else {
-                    R::ZERO
-                };
                 let exit = Exit {
                     depth,
                     normal,
                     face: (first_face + face) % FACES,
                 };
-                choice.offer(exit, surcharge);
+                choice.offer(exit, covered);
             }
         }
         first_face += faces;
