@@ -28,7 +28,7 @@ pub use plan::{
 };
 pub use plot::{PlotError, error_plot, summary_plot};
 pub use relative::Relative;
-pub use store::{Row, Store, Stored};
+pub use store::{Dropped, Row, Store, Stored};
 pub use table::write_markdown;
 
 use super::bench::Machine;
@@ -181,10 +181,16 @@ fn measure_missing(
     let truth = Truth::record(loaded, |share| progress(TRUTH_POINTS * share))?;
     let megabytes = truth.bytes() as f64 * 1e-6;
     log::info!("{}: {megabytes:.1} MB of reference poses", loaded.name);
+    let program = plan::program_name(context.program);
     let key = context.key(loaded, FLOOR);
     if store.get(&key).is_none() {
         let floor = measure::floor_row(loaded, &truth);
-        store.add(Row { key, ..floor })?;
+        let program = program.clone();
+        store.add(Row {
+            key,
+            program,
+            ..floor
+        })?;
     }
     let missing = planned.methods.iter().copied();
     let missing: Vec<_> = missing
@@ -198,7 +204,12 @@ fn measure_missing(
         })?;
         for row in rows {
             let key = context.key(loaded, &row.method);
-            store.add(Row { key, ..row })?;
+            let program = program.clone();
+            store.add(Row {
+                key,
+                program,
+                ..row
+            })?;
         }
         done += points;
     }

@@ -34,6 +34,11 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Version and hash of the program, as rows have it.
+    pub fn program_name(&self) -> String {
+        program_name(self.program)
+    }
+
     /// Whether a row is a point of this plan by its names.
     pub fn asks_for(&self, row: &Row) -> bool {
         let scene = |planned: &&Planned| planned.loaded.name == row.scene;
@@ -170,6 +175,11 @@ impl Context<'_> {
         hash.bytes(format!("{name}\n{scene}\n{solver:?}\n{device:?}\n{assets:?}").as_bytes());
         format!("{:016x}", hash.value())
     }
+}
+
+/// Version and hash of a program in words.
+pub(super) fn program_name(hash: u64) -> String {
+    format!("{}+{hash:016x}", env!("CARGO_PKG_VERSION"))
 }
 
 /// A hash of the running program's own file: whatever changes a result or a time, kernels, shaders,
