@@ -132,7 +132,10 @@ fn points_of_another_program_are_measured_again() {
         .expect("the copy starts");
     assert_eq!(code(&rebuilt), 0, "{}", said(&rebuilt));
     let warned = said(&rebuilt);
-    assert!(warned.contains("2 points are of another program"), "{warned}");
+    assert!(
+        warned.contains("2 points are of another program"),
+        "{warned}"
+    );
     let hashes = [measured_by, programs()].concat();
     assert!(hashes.iter().all(|hash| warned.contains(hash)), "{warned}");
     let second = keys();
@@ -155,7 +158,12 @@ fn a_narrower_report_does_not_lose_the_points_of_a_wider_one() {
         let refused = report(&[&narrow[..], more].concat());
         assert_eq!(code(&refused), 2);
         let text = said(&refused);
-        for told in [out.as_str(), "1 points", "`tiny` (analytic)", "another --out"] {
+        for told in [
+            out.as_str(),
+            "1 points",
+            "`tiny` (analytic)",
+            "another --out",
+        ] {
             assert!(text.contains(told), "{told}: {text}");
         }
         assert_eq!(points(), before);
@@ -166,7 +174,11 @@ fn a_narrower_report_does_not_lose_the_points_of_a_wider_one() {
     fs::write(folder.join("out/points.csv"), "x,y\n1,2\n").expect("a writable file");
     let refused = report(&wide);
     assert_eq!(code(&refused), 2);
-    assert!(said(&refused).contains("other columns"), "{}", said(&refused));
+    assert!(
+        said(&refused).contains("other columns"),
+        "{}",
+        said(&refused)
+    );
     assert_eq!(points(), "x,y\n1,2\n");
 }
 

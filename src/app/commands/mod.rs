@@ -7,7 +7,7 @@ mod bundle;
 pub mod doctor;
 mod follow;
 pub mod list;
-mod outputs;
+pub(super) mod outputs;
 pub mod render;
 pub mod replay;
 pub mod report;

@@ -13,8 +13,8 @@ use crate::app::Failure;
 use crate::app::progress::Progress;
 use crate::gpu::{Gpu, GpuError};
 use crate::run::accuracy::{
-    self, COST_SCENE, Dropped, Plan, Planned, Report, Store, Stored, cost_methods, error_plot, scenes,
-    summary_plot, write_markdown,
+    self, COST_SCENE, Dropped, Plan, Planned, Report, Store, Stored, cost_methods, error_plot,
+    scenes, summary_plot, write_markdown,
 };
 use crate::run::methods::{self, NamedMethod};
 use crate::run::{Device, Exit};

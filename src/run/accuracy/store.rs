@@ -154,7 +154,9 @@ impl Stored {
         // A line without an end may have lost digits of its last number.
         let (whole, cut) = text.split_at(text.rfind('\n').map_or(0, |at| at + 1));
         let mut lines = whole.lines();
-        let columns: Vec<&str> = lines.next().map_or_else(Vec::new, |l| l.split(',').collect());
+        let columns: Vec<&str> = lines
+            .next()
+            .map_or_else(Vec::new, |l| l.split(',').collect());
         let is_of_points = NEEDED.iter().all(|needed| columns.contains(needed));
         if !text.is_empty() && !is_of_points {
             let text = "it has other columns than a report's points";
