@@ -5,6 +5,7 @@
 
 mod process;
 
+use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
@@ -99,6 +100,190 @@ fn usage_errors_are_2_and_help_is_0() {
     }
     assert_eq!(code(&sward(&["--help"])), 0);
     assert_eq!(code(&sward(&["--version"])), 0);
+}
+
+/// What a newcomer may well write, and what they are told: the thing, its value, and what to do.
+#[test]
+fn wrong_words_are_told_by_name_with_what_to_do() {
+    let here = scene("told.ron", STILL);
+    let folder = env!("CARGO_TARGET_TMPDIR");
+    let csv = format!("{folder}/cli/twice.csv");
+    let recording = scene("any.recording", "(format: 1)");
+    for (wrong, exit, told) in [
+        (
+            &["still"][..],
+            2,
+            &["`still` is a scene", "sward view still"][..],
+        ),
+        (&[&here], 2, &["told.ron", "sward run"]),
+        (&["run", &recording], 3, &["any.recording", "sward replay"]),
+        (
+            &["replay", &here],
+            3,
+            &["told.ron", "no recording", "sward run"],
+        ),
+        (&["run", folder], 3, &[folder, "folder"]),
+        (&["list", &here], 3, &["told.ron", "folder"]),
+        (&["view", "nowhere"], 3, &["nowhere", "sward list"]),
+        (
+            &["run", "still", "--seed", "-3"],
+            2,
+            &["-3", "--seed", "0 to 4294967295"],
+        ),
+        (
+            &["run", "still", "--seed", "lush"],
+            2,
+            &["lush", "whole number from 0"],
+        ),
+        (
+            &["run", "still", "--hz", "fast"],
+            2,
+            &["fast", "--hz", "give a number"],
+        ),
+        (
+            &["run", "still", "--assets", "/nodir"],
+            2,
+            &["--assets /nodir", "folder"],
+        ),
+        (
+            &["list", folder, "--assets", &here],
+            2,
+            &["--assets", "a file"],
+        ),
+        (
+            &["replay", &recording, "--assets", "/nodir"],
+            2,
+            &["--assets /nodir"],
+        ),
+        (
+            &["run", "still", "--out", &here],
+            5,
+            &["told.ron", "give a folder"],
+        ),
+        (
+            &["run", "still", "--record", "a.rec"],
+            2,
+            &["a.rec", ".recording"],
+        ),
+        (
+            &["run", "still", "--trace", &csv, "--junit", &csv],
+            2,
+            &["--trace and --junit", &csv],
+        ),
+        (
+            &["run", &here, "--trace", &here],
+            2,
+            &["--trace", "overwrite"],
+        ),
+        (
+            &["replay", &recording, "--trace", &recording],
+            2,
+            &["overwrite"],
+        ),
+        (
+            &["blade-shape", "--segments", "-1", "--stiffness", "1"],
+            2,
+            &["-1", "from 1 to 64"],
+        ),
+        (
+            &[
+                "render", "still", "--at", "0", "--hz", "9", "--out", "a.png",
+            ],
+            2,
+            &["--frames"],
+        ),
+    ] {
+        let output = sward(wrong);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(code(&output), exit, "{wrong:?}: {said}");
+        for told in told {
+            assert!(said.contains(told), "{wrong:?}: no {told} in {said}");
+        }
+    }
+    assert_eq!(std::fs::read_to_string(&here).expect("the scene"), STILL);
+}
+
+/// None of two options is dropped in silence.
+#[test]
+fn options_that_would_change_nothing_are_refused_by_name() {
+    for (wrong, told) in [
+        (
+            &[
+                "run",
+                "still",
+                "--method",
+                "substep-30",
+                "--substep",
+                "0.01",
+            ][..],
+            ["--method substep-30", "--substep 0.01"],
+        ),
+        (
+            &[
+                "run",
+                "still",
+                "--engine",
+                "reference",
+                "--method",
+                "nearest-64",
+            ],
+            ["--method nearest-64", "--engine reference"],
+        ),
+        (
+            &[
+                "run",
+                "still",
+                "--engine",
+                "reference",
+                "--against",
+                "reference",
+            ],
+            ["--against reference", "--engine reference"],
+        ),
+        (
+            &["bench", "terrain", "--engine", "cpu"],
+            ["bench terrain", "--engine"],
+        ),
+        (
+            &[
+                "report", "accuracy", "--quick", "--scene", "roll", "--method", "default",
+            ],
+            ["--quick", "--scene"],
+        ),
+    ] {
+        let output = sward(wrong);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(code(&output), 2, "{wrong:?}: {said}");
+        assert!(output.stdout.is_empty());
+        for told in told {
+            assert!(said.contains(told), "{wrong:?}: no {told} in {said}");
+        }
+    }
+    let both = ["--method", "segments-4", "--substep", "0.01"];
+    let kept = sward(&[&["run", "still", "--engine", "cpu", "--json"], &both[..]].concat());
+    assert_eq!(json(&kept)["scenarios"][0]["ticks"], 200);
+}
+
+/// Two days of grass follow the first scene: nobody waits for them to see its verdict.
+#[test]
+fn scenes_are_printed_as_they_end() {
+    let still = scene("first.ron", STILL);
+    let endless = r#"(duration_s: 172800, bodies: [(name: "ball", shape: Ball(radius_m: 0.15),
+        position_m: (0, 0.15, 0))])"#;
+    let endless = scene("endless.ron", endless);
+    let mut child = Command::new(env!("CARGO_BIN_EXE_sward"))
+        .args(["run", "--engine", "cpu", &still, &endless])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let stdout = child.stdout.take().expect("a pipe");
+    let mut line = String::new();
+    let read = BufReader::new(stdout).read_line(&mut line);
+    child.kill().expect("a running program");
+    child.wait().expect("its end");
+    read.expect("a line");
+    assert!(line.starts_with("first: passed"), "{line}");
 }
 
 #[test]

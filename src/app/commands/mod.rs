@@ -12,7 +12,7 @@ pub mod render;
 pub mod replay;
 pub mod report;
 pub mod run;
-mod scene_file;
+pub(super) mod scene_file;
 mod schema;
 pub mod view;
 

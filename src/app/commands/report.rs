@@ -76,6 +76,11 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
         list(out)?;
         return Ok(Exit::Ok);
     }
+    if arguments.quick && !arguments.scene.is_empty() && !arguments.method.is_empty() {
+        let text = "--quick chooses scenes and methods, and both are given by --scene and --method: \
+                    leave --quick out";
+        return Err(Failure::Usage(text.into()));
+    }
     let plan = plan(arguments)?;
     let mut stored = Stored::default();
     if let Some(folder) = &arguments.out {

@@ -9,11 +9,12 @@ use clap::{Args, ValueEnum};
 
 use super::bundle::{Bundle, Contents, End, recording_name, text_of};
 use super::follow::Follower;
-use super::outputs::{FileTrace, ResultFile, finish_trace, make_folder};
+use super::outputs::{FileTrace, ResultFile, finish_trace, make_folder, refuse_one_file_for_two};
 use super::scene_file;
 use crate::app::device::EngineArguments;
 use crate::app::failure::exit_of_run;
 use crate::app::progress::Progress;
+use crate::app::values::{number, whole};
 use crate::app::{Failure, complain};
 use crate::gpu::knows_method;
 use crate::run::methods::{self, METHODS, NamedMethod};
@@ -36,16 +37,23 @@ pub struct Arguments {
         long,
         value_name = "N",
         default_value_t = 60.0,
-        allow_negative_numbers = true
+        allow_negative_numbers = true,
+        value_parser = number
     )]
     hz: f64,
     /// Length of a sub-step instead of the scene's
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = number)]
     substep: Option<f64>,
     /// Seed of the grass instead of the scene's
-    #[arg(long, value_name = "N")]
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        value_parser = |text: &str| whole(text, 0, u32::MAX)
+    )]
     seed: Option<u32>,
-    /// Settings of the solver by name, instead of the scene's
+    /// Settings of the solver by name, instead of the scene's; one that has a sub-step of its own
+    /// goes without --substep
     #[arg(long, value_name = "NAME", value_parser = method_names())]
     method: Option<String>,
     /// Also run this engine beside, with the blades and sub-step of the scene, and tell how far the poses
@@ -90,6 +98,8 @@ pub(super) fn method_names() -> PossibleValuesParser {
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
     let options = options(arguments)?;
     refuse_what_cannot_be_recorded(arguments)?;
+    refuse_what_would_be_ignored(arguments, &options)?;
+    scene_file::check_folders(&arguments.assets)?;
     let names = scene_file::distinct_names(&arguments.scenes);
     let mut outputs = Outputs::open(arguments, &names)?;
     let device = arguments.engine.open()?;
@@ -97,6 +107,11 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     let adapter = device.gpu().map(Adapter::of);
     let mut report = Report::new(device.engine_name(), adapter, options.hz);
     let recordings = std::mem::take(&mut outputs.recordings);
+    let mut printer = Printer {
+        out,
+        json: arguments.json,
+        failed: None,
+    };
     for ((scene, name), recording) in arguments.scenes.iter().zip(&names).zip(recordings) {
         let mut batch = Batch {
             arguments,
@@ -112,18 +127,42 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
         if let Some(error) = &scenario.error {
             complain(error);
         }
+        printer.scenario(&scenario);
         report.scenarios.push(scenario);
     }
     outputs.finish(&report, arguments)?;
-    let printed = if arguments.json {
-        print_json(&report, out)
-    } else {
-        table::write_table(&report, out)
-    };
-    match printed {
-        // Whoever closed the pipe still gets the verdict as the exit code.
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
-        _ => Ok(report.exit()),
+    printer.finish(&report)?;
+    Ok(report.exit())
+}
+
+/// Prints scenarios as they end, or all of them at the end where JSON is asked for.
+struct Printer<'a, W> {
+    out: &'a mut W,
+    json: bool,
+    /// What went wrong first; nothing is printed after it, and the other scenarios still run.
+    failed: Option<io::Error>,
+}
+
+impl<W: Write> Printer<'_, W> {
+    fn scenario(&mut self, scenario: &Scenario) {
+        if !self.json && self.failed.is_none() {
+            self.failed = table::write_scenario(scenario, self.out).err();
+        }
+    }
+
+    fn finish(mut self, report: &Report) -> Result<(), Failure> {
+        if self.failed.is_none() {
+            let printed = match self.json {
+                true => print_json(report, self.out),
+                false => table::write_count(report, self.out),
+            };
+            self.failed = printed.err();
+        }
+        match self.failed {
+            // Whoever closed the pipe still gets the verdict as the exit code.
+            Some(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -153,6 +192,40 @@ fn refuse_what_cannot_be_recorded(arguments: &Arguments) -> Result<(), Failure> 
     if arguments.record.is_some() && arguments.engine.choice()? == EngineChoice::Reference {
         let text = "--record with --engine reference: a recording is replayed and verified on the cpu \
                     engine, which takes other sub-steps; record with --engine cpu or gpu";
+        return Err(Failure::Usage(text.into()));
+    }
+    Ok(())
+}
+
+/// Options that would change nothing beside another one.
+fn refuse_what_would_be_ignored(
+    arguments: &Arguments,
+    options: &RunOptions,
+) -> Result<(), Failure> {
+    let engine = arguments.engine.choice()?;
+    if let (Some(method), Some(substep_s)) = (options.method, arguments.substep)
+        && method.has_own_substep()
+    {
+        let method = method.name;
+        return Err(Failure::Usage(format!(
+            "--method {method} has a sub-step of its own, so that --substep {substep_s} would change \
+             nothing: leave one of them out"
+        )));
+    }
+    if engine != EngineChoice::Reference {
+        return Ok(());
+    }
+    if let Some(method) = options.method.filter(|m| m.is_lost_on_reference()) {
+        return Err(Failure::Usage(format!(
+            "--method {} would change nothing with --engine reference, which has exact shapes, sweeps \
+             and rounds of its own: leave one of them out; `--engine cpu --method {} --against \
+             reference` compares the two",
+            method.name, method.name
+        )));
+    }
+    if options.against_reference {
+        let text = "--against reference with --engine reference compares it with itself: take --engine \
+                    cpu or gpu, or leave one of them out";
         return Err(Failure::Usage(text.into()));
     }
     Ok(())
@@ -193,6 +266,30 @@ struct Outputs {
 
 impl Outputs {
     fn open(arguments: &Arguments, names: &[String]) -> Result<Self, Failure> {
+        refuse_one_file_for_two(
+            &[
+                ("--trace", arguments.trace.as_deref()),
+                ("--junit", arguments.junit.as_deref()),
+                ("--record", arguments.record.as_deref()),
+                (
+                    "--out",
+                    arguments
+                        .out
+                        .as_deref()
+                        .map(|f| f.join("report.json"))
+                        .as_deref(),
+                ),
+                (
+                    "--out",
+                    arguments
+                        .out
+                        .as_deref()
+                        .map(|f| f.join("report.txt"))
+                        .as_deref(),
+                ),
+            ],
+            &arguments.scenes,
+        )?;
         if let Some(folder) = &arguments.out {
             make_folder(folder)?;
         }
@@ -239,6 +336,13 @@ fn open_recordings(
             "--record {} is one file for {} scenes: give a folder",
             path.display(),
             names.len()
+        );
+        return Err(Failure::Usage(text));
+    }
+    if !is_file && path.extension().is_some() && !path.is_dir() {
+        let text = format!(
+            "--record {}: a recording's name ends in .recording; a new folder's name has no ending",
+            path.display()
         );
         return Err(Failure::Usage(text));
     }

@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::outputs::make_folder;
 use super::render::size;
+use super::scene_file;
 use crate::app::device::EngineArguments;
 use crate::app::{Failure, window};
 use crate::run::Exit;
@@ -45,6 +46,7 @@ impl Default for Arguments {
 
 /// Opens the window.
 pub fn run(arguments: Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
+    scene_file::check_folders(&arguments.assets)?;
     if let Some(folder) = &arguments.out {
         make_folder(folder)?;
     }
