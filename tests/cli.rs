@@ -203,6 +203,38 @@ fn wrong_words_are_told_by_name_with_what_to_do() {
     assert_eq!(std::fs::read_to_string(&here).expect("the scene"), STILL);
 }
 
+/// The report measures at the ends of frames, a trace at those of sub-steps: at one rate they agree.
+#[test]
+fn a_trace_agrees_with_the_report_at_the_rate_of_the_sub_steps() {
+    let rolls = STANDS.replace("MOTION", "Thrown(velocity_m_per_s: (1.5, 0, 0))");
+    let path = scene("traced.ron", &rolls);
+    let trace = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("cli/traced.csv");
+    let file = trace.display().to_string();
+    let output = sward(&[
+        "run", &path, "--engine", "cpu", "--json", "--hz", "120", "--trace", &file,
+    ]);
+    let report = json(&output);
+    let metrics = &report["scenarios"][0]["metrics"];
+    let rows = std::fs::read_to_string(&trace).expect("the trace");
+    let mut lines = rows.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let head = lines.next().expect("a head");
+    let lines: Vec<Vec<&str>> = lines.collect();
+    for name in [
+        "max_penetration_m",
+        "over_push_m",
+        "max_length_strain",
+        "max_offset_m",
+    ] {
+        let column = head.iter().position(|column| *column == name).expect(name);
+        let values = lines
+            .iter()
+            .map(|line| line[column].parse::<f64>().expect("a number"));
+        let largest = values.fold(0.0, f64::max);
+        assert_eq!(metrics[name].as_f64(), Some(largest), "{name}");
+    }
+    assert!(metrics["over_push_m"].as_f64() > Some(0.0));
+}
+
 /// None of two options is dropped in silence.
 #[test]
 fn options_that_would_change_nothing_are_refused_by_name() {
