@@ -202,6 +202,7 @@ impl Shoot<'_> {
             self.stage.tick()?;
             self.progress.set(self.stage.meadow().time_s() / last_s);
         }
+        self.stage.engine().check()?;
         let view = self.stage.camera(self.arguments.camera.as_deref())?;
         let overlay = self.arguments.overlay;
         (self.stage).draw(self.gpu, &view, &self.target.view, overlay)?;

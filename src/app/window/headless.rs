@@ -63,6 +63,7 @@ fn with_picture(
     while stage.meadow().time_s() < loaded.scene.duration_s {
         stage.tick()?;
     }
+    stage.engine().check()?;
     let view = stage.camera(None)?;
     stage.draw(gpu, &view, &target.view, false)?;
     let picture = target.read(gpu)?;
