@@ -55,7 +55,8 @@ impl GpuGrass {
     pub fn read_state(&self, meadow: &Meadow) -> Result<GpuState, GpuError> {
         let slabs: Vec<u32> = meadow.work.tiles.iter().map(|tile| tile.slab).collect();
         let state = self.buffers.state.parts(&runs(self, &slabs))?;
-        let header = self.buffers.touched.parts(&[0..TOUCHED_HEADER as usize])?;
+        let header = 0..TOUCHED_HEADER as usize;
+        let header = self.buffers.touched.parts(std::slice::from_ref(&header))?;
         // One wait for both.
         let bytes = read_together(&self.gpu, "grass state", &[header, state].concat())?;
         let (header, rows) = bytes.split_at(TOUCHED_HEADER as usize * size_of::<u32>());

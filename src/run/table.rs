@@ -65,6 +65,9 @@ pub fn write_scenario(scenario: &Scenario, out: &mut impl Write) -> io::Result<(
     for kind in colliders(&scenario.colliders) {
         writeln!(out, "  collider     {kind}")?;
     }
+    if let Some(clamp) = &scenario.literal_springs {
+        writeln!(out, "  springs      literal: {}", clamp.words())?;
+    }
     let passes = scenario.pass_ms.iter();
     write_list(
         out,

@@ -1,11 +1,15 @@
 //! `sward run`.
 
-use std::io::{self, Write};
+mod printer;
+mod refuse;
+
+use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
+use printer::{Printer, print_json};
 
 use super::bundle::{Bundle, Contents, End, recording_name, text_of};
 use super::follow::Follower;
@@ -16,13 +20,12 @@ use crate::app::failure::exit_of_run;
 use crate::app::progress::Progress;
 use crate::app::values::{number, whole};
 use crate::app::{Failure, complain};
-use crate::gpu::knows_method;
 use crate::run::methods::{self, METHODS, NamedMethod};
 use crate::run::report::{Adapter, Report, Scenario};
 use crate::run::{
-    Device, EngineChoice, Exit, Outcome, Recorder, RunError, RunOptions, junit, run_watched, table,
+    Device, Exit, Outcome, Recorder, RunError, RunOptions, junit, run_watched, table,
 };
-use crate::scene::{LoadedScene, Solver, limits};
+use crate::scene::{LoadedScene, limits};
 
 /// Run scenarios without a window and check their expectations
 #[derive(Args, Debug)]
@@ -97,21 +100,17 @@ pub(super) fn method_names() -> PossibleValuesParser {
 /// Runs all scenes and prints the report.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
     let options = options(arguments)?;
-    refuse_what_cannot_be_recorded(arguments)?;
-    refuse_what_would_be_ignored(arguments, &options)?;
+    refuse::what_cannot_be_recorded(arguments)?;
+    refuse::what_would_be_ignored(arguments, &options)?;
     scene_file::check_folders(&arguments.assets)?;
     let names = scene_file::distinct_names(&arguments.scenes);
     let mut outputs = Outputs::open(arguments, &names)?;
     let device = arguments.engine.open()?;
-    refuse_unknown_to_gpu(&device, options.method)?;
+    refuse::unknown_to_gpu(&device, options.method)?;
     let adapter = device.gpu().map(Adapter::of);
     let mut report = Report::new(device.engine_name(), adapter, options.hz);
     let recordings = std::mem::take(&mut outputs.recordings);
-    let mut printer = Printer {
-        out,
-        json: arguments.json,
-        failed: None,
-    };
+    let mut printer = Printer::new(out, arguments.json);
     for ((scene, name), recording) in arguments.scenes.iter().zip(&names).zip(recordings) {
         let mut batch = Batch {
             arguments,
@@ -135,37 +134,6 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     Ok(report.exit())
 }
 
-/// Prints scenarios as they end, or all of them at the end where JSON is asked for.
-struct Printer<'a, W> {
-    out: &'a mut W,
-    json: bool,
-    /// What went wrong first; nothing is printed after it, and the other scenarios still run.
-    failed: Option<io::Error>,
-}
-
-impl<W: Write> Printer<'_, W> {
-    fn scenario(&mut self, scenario: &Scenario) {
-        if !self.json && self.failed.is_none() {
-            self.failed = table::write_scenario(scenario, self.out).err();
-        }
-    }
-
-    fn finish(mut self, report: &Report) -> Result<(), Failure> {
-        if self.failed.is_none() {
-            let printed = match self.json {
-                true => print_json(report, self.out),
-                false => table::write_count(report, self.out),
-            };
-            self.failed = printed.err();
-        }
-        match self.failed {
-            // Whoever closed the pipe still gets the verdict as the exit code.
-            Some(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
-            _ => Ok(()),
-        }
-    }
-}
-
 fn options(arguments: &Arguments) -> Result<RunOptions, Failure> {
     if let Some(substep_s) = arguments.substep {
         let limit = limits::SUBSTEP;
@@ -185,73 +153,6 @@ fn options(arguments: &Arguments) -> Result<RunOptions, Failure> {
         against_reference: arguments.against.is_some(),
         ..RunOptions::default()
     })
-}
-
-/// A recording is verified with the cpu engine, whose bodies take other steps than the reference's.
-fn refuse_what_cannot_be_recorded(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.record.is_some() && arguments.engine.choice()? == EngineChoice::Reference {
-        let text = "--record with --engine reference: a recording is replayed and verified on the cpu \
-                    engine, which takes other sub-steps; record with --engine cpu or gpu";
-        return Err(Failure::Usage(text.into()));
-    }
-    Ok(())
-}
-
-/// Options that would change nothing beside another one.
-fn refuse_what_would_be_ignored(
-    arguments: &Arguments,
-    options: &RunOptions,
-) -> Result<(), Failure> {
-    let engine = arguments.engine.choice()?;
-    if let (Some(method), Some(substep_s)) = (options.method, arguments.substep)
-        && method.has_own_substep()
-    {
-        let method = method.name;
-        return Err(Failure::Usage(format!(
-            "--method {method} has a sub-step of its own, so that --substep {substep_s} would change \
-             nothing: leave one of them out"
-        )));
-    }
-    if engine != EngineChoice::Reference {
-        return Ok(());
-    }
-    if let Some(method) = options.method.filter(|m| m.is_lost_on_reference()) {
-        return Err(Failure::Usage(format!(
-            "--method {} would change nothing with --engine reference, which has exact shapes, sweeps \
-             and rounds of its own: leave one of them out; `--engine cpu --method {} --against \
-             reference` compares the two",
-            method.name, method.name
-        )));
-    }
-    if options.against_reference {
-        let text = "--against reference with --engine reference compares it with itself: take --engine \
-                    cpu or gpu, or leave one of them out";
-        return Err(Failure::Usage(text.into()));
-    }
-    Ok(())
-}
-
-fn refuse_unknown_to_gpu(
-    device: &Device,
-    method: Option<&'static NamedMethod>,
-) -> Result<(), Failure> {
-    let known = |method: &NamedMethod| {
-        let mut solver = Solver::default();
-        method.apply(&mut solver);
-        knows_method(&solver.method)
-    };
-    match method {
-        Some(method) if device.gpu().is_some() && !known(method) => {
-            let names = METHODS.iter().filter(|m| known(m)).map(|m| m.name);
-            let names: Vec<&str> = names.collect();
-            Err(Failure::Missing(format!(
-                "--method {}: the gpu engine does not have it; take --engine cpu, or one of {}",
-                method.name,
-                names.join(", ")
-            )))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// Every file the run is to write, opened before it.
@@ -488,9 +389,4 @@ fn judged(
     };
     let scenario = Scenario::broken(name.to_owned(), error.clone(), exit);
     (scenario, End::BrokenOff { ticks, error })
-}
-
-fn print_json(report: &Report, out: &mut impl Write) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut *out, report)?;
-    writeln!(out)
 }

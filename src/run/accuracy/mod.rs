@@ -34,6 +34,7 @@ pub use table::write_markdown;
 use super::bench::Machine;
 use super::report::Adapter;
 use super::scenario::{Device, RunError};
+use super::spring_clamp::SpringClamp;
 use crate::field::blade_table::TableError;
 use crate::scene::Scene;
 use truth::Truth;
@@ -70,6 +71,8 @@ pub struct SceneReport {
     pub floor: Row,
     pub rows: Vec<Row>,
     pub left_out: Vec<LeftOut>,
+    /// What the stability clamp does in the methods that have literal springs.
+    pub clamps: Vec<(&'static str, SpringClamp)>,
 }
 
 impl SceneReport {
@@ -167,6 +170,7 @@ fn run_scene(
         floor: row(FLOOR).unwrap_or_default(),
         rows: rows.filter_map(|method| row(method.name)).collect(),
         left_out: planned.left_out.clone(),
+        clamps: planned.clamps(),
     })
 }
 

@@ -9,6 +9,7 @@ use crate::base::hash::Hash64;
 use crate::run::methods::{METHODS, NamedMethod, method};
 use crate::run::report::Adapter;
 use crate::run::scenario::Device;
+use crate::run::spring_clamp::SpringClamp;
 use crate::scene::{LoadedScene, Motion, Scene, Solver, to_ron};
 
 /// Methods that the quick report leaves out: inner points of curves whose ends it has.
@@ -84,6 +85,16 @@ impl Planned {
     pub(super) fn names(&self) -> impl Iterator<Item = &'static str> {
         let methods = self.methods.iter().map(|method| method.name);
         std::iter::once(FLOOR).chain(methods)
+    }
+
+    /// What the stability clamp does in its methods that have literal springs.
+    pub(super) fn clamps(&self) -> Vec<(&'static str, SpringClamp)> {
+        let clamp = |method: &&'static NamedMethod| {
+            let mut solver = self.loaded.scene.solver.clone();
+            method.apply(&mut solver);
+            Some((method.name, SpringClamp::of(&solver)?))
+        };
+        self.methods.iter().filter_map(clamp).collect()
     }
 
     /// A scene with the methods that can be compared on it.
