@@ -73,7 +73,6 @@ fn collide(
     }
     var walk = walk_before(tile, plant, state[row].x);
     var held = false;
-    var met = 0u;
     for (var j = 0u; j < field.segments; j++) {
         walk_up(&walk, plant, j, bitcast<vec3f>(state[row + 1u + j].xyz));
         let free = !walk.before || !is_pinned(tile, walk.node);
@@ -83,11 +82,8 @@ fn collide(
             return;
         }
         held = held || (walk.before && node_held(tile, plant, walk.node));
-        met++;
     }
-    if met < field.segments {
-        add_cut_short();
-    }
+    tell_if_cut_short(field.segments);
     // Held where it was pushed before: it keeps its pose and does not recover yet.
     if held && done + tick.collide_sweeps >= sweeps {
         add_touched(Touched(group.y, place, 0u));

@@ -331,16 +331,11 @@ fn relax(
     let rounds = respond(tile, plant.height_m, done, entry.sweeps, walk.length);
     atomicMax(&touched[1], rounds);
     let is_last = done + tick.relax_sweeps >= entry.sweeps;
-    var stored = 0u;
     for (var j = 0u; j < field.segments; j++) {
         let kept = nodes[j + 1u] - select(vec3f(0.0), wind_nodes[j + 1u], is_last);
         state[row + 1u + j] = vec4u(bitcast<vec3u>(kept), faces[j]);
-        stored++;
     }
-    // Once a driver's limit is reached every loop ends after its first round, this one too.
-    if stored < field.segments {
-        add_cut_short();
-    }
+    tell_if_cut_short(field.segments);
     state[row] = vec4u(tick.now, 0u, 0u, 0u);
 }
 

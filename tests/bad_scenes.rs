@@ -49,6 +49,9 @@ fn text_that_is_no_scene() {
         "(\n grass: (\n  colour: 3))" => "3:3" "grass.colour": "no known key", "density_per_m2";
         body!("shape: Ball(radius: 3)") => "2:25" "bodies[0].shape.radius": "did you mean radius_m?";
         "(bodies: [\n (name: \"a\")])" => "2:2" "bodies[0].shape": "is missing";
+        "(bodies: [(shape: Ball(radius_m: 1))])" => "1:11" "bodies[0].name": "is missing";
+        "(bodies: [(shape: Ball(radius_m: 1), damping: (0, 0))])" => "1:11" "bodies[0].name": "is missing";
+        body!("shape: Capsule(radius_m: 1)") => "2:20" "bodies[0].shape.length_m": "is missing";
         body!("shape: Ball()") => "2:20" "bodies[0].shape.radius_m": "is missing";
         body!("name: \"b\"") => "2:13" "bodies[0].name": "twice";
         body!("shape: Bal(radius_m: 1)") => "2:20" "bodies[0].shape": "did you mean Ball?", "Vehicle";

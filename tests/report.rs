@@ -109,11 +109,17 @@ fn points_of_another_program_are_measured_again() {
         let key = |line: &str| line.split(',').next().map(str::to_owned);
         points.lines().skip(1).filter_map(key).collect()
     };
+    let programs = || -> Vec<String> {
+        let points = fs::read_to_string(folder.join("out/points.csv")).expect("the points");
+        let program = |line: &str| line.split(',').nth(1).map(str::to_owned);
+        points.lines().skip(1).filter_map(program).collect()
+    };
     let first = keys();
     let resumed = report(&[&arguments[..], &["--resume"]].concat());
     assert_eq!((code(&resumed), keys()), (0, first.clone()));
     assert_eq!(said(&resumed), "");
 
+    let measured_by = programs();
     let other = folder.join("sward");
     let mut bytes = fs::read(env!("CARGO_BIN_EXE_sward")).expect("the program");
     bytes.push(0);
@@ -125,7 +131,13 @@ fn points_of_another_program_are_measured_again() {
         .output()
         .expect("the copy starts");
     assert_eq!(code(&rebuilt), 0, "{}", said(&rebuilt));
-    assert!(said(&rebuilt).contains("2 points are of another program"));
+    let warned = said(&rebuilt);
+    assert!(
+        warned.contains("2 points are of another program"),
+        "{warned}"
+    );
+    let hashes = [measured_by, programs()].concat();
+    assert!(hashes.iter().all(|hash| warned.contains(hash)), "{warned}");
     let second = keys();
     assert_eq!(second.len(), 2, "nothing of the other program is left");
     assert!(second.iter().all(|key| !first.contains(key)));
@@ -141,14 +153,33 @@ fn a_narrower_report_does_not_lose_the_points_of_a_wider_one() {
     assert_eq!(code(&report(&wide)), 0);
     let points = || fs::read_to_string(folder.join("out/points.csv")).expect("the points");
     let before = points();
-    let narrow = [
-        "--scene", &scene, "--method", "default", "--out", &out, "--resume",
-    ];
-    let refused = report(&narrow);
+    let narrow = ["--scene", &scene, "--method", "default", "--out", &out];
+    for more in [&[][..], &["--resume"]] {
+        let refused = report(&[&narrow[..], more].concat());
+        assert_eq!(code(&refused), 2);
+        let text = said(&refused);
+        for told in [
+            out.as_str(),
+            "1 points",
+            "`tiny` (analytic)",
+            "another --out",
+        ] {
+            assert!(text.contains(told), "{told}: {text}");
+        }
+        assert_eq!(points(), before);
+    }
+    // What asks for all of them may start anew.
+    assert_eq!(code(&report(&wide)), 0);
+    assert_ne!(points(), "");
+    fs::write(folder.join("out/points.csv"), "x,y\n1,2\n").expect("a writable file");
+    let refused = report(&wide);
     assert_eq!(code(&refused), 2);
-    let text = said(&refused);
-    assert!(text.contains("`tiny` (analytic)"), "{text}");
-    assert_eq!(points(), before);
+    assert!(
+        said(&refused).contains("other columns"),
+        "{}",
+        said(&refused)
+    );
+    assert_eq!(points(), "x,y\n1,2\n");
 }
 
 #[test]

@@ -8,7 +8,7 @@ mod window_harness;
 use std::process::Command;
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use window_harness::{Shot, Window, folder, missing, run_to_end};
+use window_harness::{Server, Shot, Window, folder, is_installed, missing, run_to_end};
 
 /// A ball that goes to and fro over a small meadow. No red but the overlay's.
 const ROLL: &str = r#"(
@@ -71,6 +71,17 @@ fn main() {
     trials.push(Trial::test("no_display_gives_a_picture", move || {
         no_display_gives_a_picture(has_adapter)
     }));
+    trials.push(Trial::test("no_display_and_no_folder_is_5", || {
+        no_display_and_no_folder_is_5()
+    }));
+    // Drivers of other platforms are not found by files, and keep their adapter.
+    let lacks_server = !is_installed("Xvfb") || !cfg!(target_os = "linux");
+    trials.push(
+        Trial::test("a_display_without_an_adapter_is_4", || {
+            a_display_without_an_adapter_is_4()
+        })
+        .with_ignored_flag(lacks_server),
+    );
     libtest_mimic::run(&arguments, trials).exit();
 }
 
@@ -228,4 +239,51 @@ fn no_display_gives_a_picture(has_adapter: bool) -> Result<(), Failed> {
     let picture = folder.join("sward-b_still.png").is_file();
     let told = stderr.contains("no picture");
     ensure(picture == has_adapter && told != has_adapter, stderr)
+}
+
+/// The scene would take half an hour: it is not begun.
+fn no_display_and_no_folder_is_5() -> Result<(), Failed> {
+    let folder = folder("no_folder")?;
+    std::fs::write(
+        folder.join("long.ron"),
+        STILL.replace("duration_s: 0.1", "duration_s: 170000"),
+    )?;
+    std::fs::write(folder.join("file"), "")?;
+    for out in ["none/out", "file"] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_sward"));
+        command
+            .args(["view", "long.ron", "--size", "160x100", "--out", out])
+            .current_dir(&folder)
+            .env_remove("DISPLAY")
+            .env_remove("WAYLAND_DISPLAY")
+            .env_remove("WAYLAND_SOCKET");
+        let (code, stderr) = run_to_end(command)?;
+        ensure(code == Some(5), format!("exit {code:?}: {stderr}"))?;
+        ensure(stderr.contains(&format!("cannot write {out}")), stderr)?;
+    }
+    ensure(
+        !folder.join("none").exists(),
+        "a slip in a path makes no folders",
+    )
+}
+
+fn a_display_without_an_adapter_is_4() -> Result<(), Failed> {
+    let server = Server::start()?;
+    let folder = folder("no_adapter")?;
+    std::fs::write(folder.join("b_still.ron"), STILL)?;
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sward"));
+    command
+        .args(["view", "b_still.ron"])
+        .current_dir(&folder)
+        .env("DISPLAY", server.display())
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .env("VK_ICD_FILENAMES", "/dev/null")
+        .env("VK_DRIVER_FILES", "/dev/null");
+    let (code, stderr) = run_to_end(command)?;
+    ensure(code == Some(4), format!("exit {code:?}: {stderr}"))?;
+    for told in ["no graphics adapter", "sward run", "mesa-vulkan-drivers"] {
+        ensure(stderr.contains(told), format!("no {told}: {stderr}"))?;
+    }
+    Ok(())
 }

@@ -16,9 +16,17 @@ fn turn() -> u32 {
     return atomicLoad(&touched[2]);
 }
 
-// Counts an invocation whose loops the driver has ended early: see src/gpu/turns.rs.
-fn add_cut_short() {
-    atomicAdd(&touched[3], 1u);
+// Counts an invocation whose loops the driver has ended early: see src/gpu/turns.rs. Once its limit is
+// reached every loop ends after its first round, a loop of two rounds too.
+fn tell_if_cut_short(segments: u32) {
+    var rounds = 0u;
+    // No compiler knows that these are two.
+    for (var j = 0u; j <= min(segments, 1u); j++) {
+        rounds++;
+    }
+    if rounds < 2u {
+        atomicAdd(&touched[3], 1u);
+    }
 }
 
 fn add_touched(plant: Touched) {

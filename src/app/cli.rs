@@ -1,8 +1,12 @@
 //! The command line.
 
+use std::path::Path;
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Parser, Subcommand};
 
 use super::commands::{bench, blade_shape, list, render, replay, report, run, view};
+use crate::scene::builtin::SCENES;
 
 /// Responsive grass: bodies press real imprints into a meadow.
 ///
@@ -37,4 +41,18 @@ pub enum Command {
     Schema,
     /// Show the graphics adapters, their limits and features, and what these mean
     Doctor,
+}
+
+/// What to write instead, where a scene stands in the place of a command.
+pub fn scene_for_command(error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else {
+        return None;
+    };
+    let is_scene = Path::new(word).is_file() || SCENES.iter().any(|scene| scene.name == word);
+    (error.kind() == ErrorKind::InvalidSubcommand && is_scene).then(|| {
+        format!(
+            "`{word}` is a scene and no command: `sward view {word}` opens it in a window, \
+             `sward run {word}` runs it without one"
+        )
+    })
 }

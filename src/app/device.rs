@@ -26,6 +26,11 @@ enum EngineName {
 }
 
 impl EngineArguments {
+    /// Whether any of the options was given.
+    pub fn is_chosen(&self) -> bool {
+        self.engine.is_some() || self.require_gpu
+    }
+
     /// What the user asks for.
     ///
     /// # Errors

@@ -5,6 +5,7 @@ mod commands;
 mod device;
 mod failure;
 mod progress;
+mod values;
 mod window;
 
 use std::fmt::Display;
@@ -26,8 +27,11 @@ pub fn main() -> ExitCode {
     let arguments = match cli::Cli::try_parse() {
         Ok(arguments) => arguments,
         Err(help_or_error) => {
-            // Nobody reads a help text that cannot be printed.
-            let _ = help_or_error.print();
+            match cli::scene_for_command(&help_or_error) {
+                Some(advice) => complain(&advice),
+                // Nobody reads a help text that cannot be printed.
+                None => _ = help_or_error.print(),
+            }
             return if help_or_error.use_stderr() {
                 Exit::Usage.into()
             } else {

@@ -191,42 +191,63 @@ impl<T: Pod> Buffer<T> {
     /// # Errors
     /// As for [`Buffer::read`]; runs beyond the buffer's end are refused.
     pub fn read_runs(&self, gpu: &Gpu, runs: &[Range<usize>]) -> Result<Vec<T>, GpuError> {
+        let bytes = read_together(gpu, self.label, &self.parts(runs)?)?;
+        Ok(bytemuck::pod_collect_to_vec(&bytes))
+    }
+
+    /// Runs of elements as parts of a reading that may have parts of other buffers.
+    ///
+    /// # Errors
+    /// `ReadBack` for runs beyond the buffer's end.
+    pub(super) fn parts(&self, runs: &[Range<usize>]) -> Result<Vec<Part<'_>>, GpuError> {
         if let Some(run) = runs.iter().find(|run| run.end > self.len) {
             return Err(GpuError::ReadBack {
                 what: self.label.to_owned(),
                 reason: format!("elements {run:?} were asked for, there are {}", self.len),
             });
         }
-        let count: usize = runs.iter().map(ExactSizeIterator::len).sum();
-        if count == 0 {
-            return Ok(Vec::new());
-        }
         let element = size_of::<T>() as u64;
-        let bytes = (count as u64 * element).next_multiple_of(4);
-        let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("read back"),
-            size: bytes,
-            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let mut at = 0;
-        for run in runs.iter().filter(|run| !run.is_empty()) {
-            // Copies are in steps of four bytes; what one run's last step adds, the next overwrites.
-            let run_bytes = (run.len() as u64 * element).next_multiple_of(4);
-            encoder.copy_buffer_to_buffer(
-                &self.raw,
-                run.start as u64 * element,
-                &copy,
-                at,
-                run_bytes,
-            );
-            at += run.len() as u64 * element;
-        }
-        gpu.queue.submit([encoder.finish()]);
-        let raw = read_mapped(gpu, self.label, &copy)?;
-        Ok(bytemuck::pod_collect_to_vec(&raw[..count * size_of::<T>()]))
+        let bytes = |run: &Range<usize>| run.start as u64 * element..run.end as u64 * element;
+        let parts = runs.iter().filter(|run| !run.is_empty());
+        Ok(parts.map(|run| (&self.raw, bytes(run))).collect())
     }
+}
+
+/// A buffer with the bytes of it that are wanted.
+pub(super) type Part<'a> = (&'a wgpu::Buffer, Range<u64>);
+
+/// Reads parts of buffers back, one after the other, with one wait for the device.
+///
+/// # Errors
+/// As for [`Buffer::read`].
+pub(super) fn read_together(
+    gpu: &Gpu,
+    what: &str,
+    parts: &[Part<'_>],
+) -> Result<Vec<u8>, GpuError> {
+    let count: u64 = parts.iter().map(|(_, bytes)| bytes.end - bytes.start).sum();
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size: count.next_multiple_of(4),
+        usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut at = 0;
+    for (buffer, bytes) in parts {
+        let length = bytes.end - bytes.start;
+        // Copies are in steps of four bytes; what one part's last step adds, the next overwrites.
+        let copied = length.next_multiple_of(4);
+        encoder.copy_buffer_to_buffer(buffer, bytes.start, &copy, at, copied);
+        at += length;
+    }
+    gpu.queue.submit([encoder.finish()]);
+    let mut bytes = read_mapped(gpu, what, &copy)?;
+    bytes.truncate(count as usize);
+    Ok(bytes)
 }
 
 /// Maps a read-back buffer, waits and copies its bytes.

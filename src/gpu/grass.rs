@@ -8,8 +8,9 @@
 use super::cubes::Cubes;
 use super::field_data::TileRecord;
 use super::grass_buffers::{
-    COLLIDE_GROUPS, GrassBuffers, RECOVER_GROUPS, TOUCHED_HEADER, slab_limit,
+    COLLIDE_GROUPS, CUT_SHORT_BYTE, GrassBuffers, RECOVER_GROUPS, TOUCHED_HEADER, slab_limit,
 };
+use super::late_count::LateCount;
 use super::passes::collide::CollidePass;
 use super::passes::depth_cube::DepthCubePass;
 use super::passes::recover::RecoverPass;
@@ -134,6 +135,7 @@ pub struct GpuGrass {
     turns: PassTurns,
     pub dispatches: Dispatches,
     pub timer: PassTimer,
+    cut_short: LateCount,
 }
 
 impl GpuGrass {
@@ -165,6 +167,7 @@ impl GpuGrass {
             turns: PassTurns::new(meadow),
             dispatches: Dispatches::default(),
             timer: PassTimer::new(gpu, MOST_TIMED),
+            cut_short: LateCount::new(gpu),
         };
         grass.field.set_wind(gpu, &meadow.work.wind)?;
         Ok(grass)
@@ -260,8 +263,20 @@ impl GpuGrass {
     pub fn submit(&mut self) {
         let mut encoder = std::mem::replace(&mut self.encoder, new_encoder(&self.gpu));
         self.timer.finish_frame(&mut encoder);
+        let (touched, byte) = (&self.buffers.touched.raw, CUT_SHORT_BYTE);
+        self.cut_short.record(&mut encoder, touched, byte);
         self.gpu.queue.submit([encoder.finish()]);
         self.timer.collect(&self.gpu);
+        self.cut_short.collect(&self.gpu);
+    }
+
+    /// Whether the driver has ended loops of kernels early, as far as is known without waiting: for a
+    /// window, which reads no state back.
+    ///
+    /// # Errors
+    /// `CutShort`, from a frame or two later on.
+    pub fn check_late(&self) -> Result<(), GpuError> {
+        self.check_cut_short(self.cut_short.value())
     }
 
     /// Writes the nodes of active tiles' plants as they stand after the last tick; once per

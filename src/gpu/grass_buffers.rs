@@ -15,6 +15,8 @@ pub const RECOVER_GROUPS: u32 = 6;
 /// Words before the first entry of the list of touched plants: their count, the most rounds any
 /// plant took since the start, the turn of the pass, how often a kernel's loops were cut short.
 pub const TOUCHED_HEADER: u32 = 4;
+/// Where the last of these is, in bytes.
+pub const CUT_SHORT_BYTE: u64 = 12;
 /// Most tiles that may be active at once: an entry of the touched list names its tile in 16 bits.
 pub const MOST_TILES: u32 = 65_535;
 

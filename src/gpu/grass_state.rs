@@ -1,6 +1,9 @@
 //! The grass's state between device and memory: read back for measures and tests, uploaded to show
 //! or continue what another engine simulated.
 
+use std::ops::Range;
+
+use super::buffer::read_together;
 use super::grass::GpuGrass;
 use super::grass_buffers::TOUCHED_HEADER;
 use super::{Buffer, GpuError};
@@ -32,21 +35,34 @@ pub struct Counts {
     pub cut_short: u32,
 }
 
+impl Counts {
+    /// From the header of the list of touched plants.
+    fn new(header: &[u32]) -> Self {
+        let word = |n: usize| header.get(n).copied().unwrap_or(0);
+        Self {
+            touched: word(0),
+            rounds_peak: word(1),
+            cut_short: word(3),
+        }
+    }
+}
+
 impl GpuGrass {
     /// Reads the slabs of the meadow's active tiles. Waits for the device.
     ///
     /// # Errors
     /// The device's; kernels that the driver did not let finish.
     pub fn read_state(&self, meadow: &Meadow) -> Result<GpuState, GpuError> {
-        let count = self.read_counts()?.cut_short;
-        if count > 0 {
-            return Err(GpuError::CutShort {
-                adapter: self.gpu.adapter.name.clone(),
-                count,
-            });
-        }
         let slabs: Vec<u32> = meadow.work.tiles.iter().map(|tile| tile.slab).collect();
-        let rows = read_slabs(self, &self.buffers.state, &slabs)?;
+        let state = self.buffers.state.parts(&runs(self, &slabs))?;
+        let header = 0..TOUCHED_HEADER as usize;
+        let header = self.buffers.touched.parts(std::slice::from_ref(&header))?;
+        // One wait for both.
+        let bytes = read_together(&self.gpu, "grass state", &[header, state].concat())?;
+        let (header, rows) = bytes.split_at(TOUCHED_HEADER as usize * size_of::<u32>());
+        let header: Vec<u32> = bytemuck::pod_collect_to_vec(header);
+        self.check_cut_short(Counts::new(&header).cut_short)?;
+        let rows: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(rows);
         let plants = meadow.field.grid.plants_per_tile() as usize;
         let segments = meadow.scene.solver.segments as usize;
         let mut state = GpuState::default();
@@ -78,10 +94,24 @@ impl GpuGrass {
             .buffers
             .touched
             .read(&self.gpu, TOUCHED_HEADER as usize)?;
-        Ok(Counts {
-            touched: header.first().copied().unwrap_or(0),
-            rounds_peak: header.get(1).copied().unwrap_or(0),
-            cut_short: header.get(3).copied().unwrap_or(0),
+        Ok(Counts::new(&header))
+    }
+
+    /// Whether the driver has ended loops of kernels early. Waits for the device.
+    ///
+    /// # Errors
+    /// `CutShort`; the device's.
+    pub fn check(&self) -> Result<(), GpuError> {
+        self.check_cut_short(self.read_counts()?.cut_short)
+    }
+
+    pub(super) fn check_cut_short(&self, count: u32) -> Result<(), GpuError> {
+        if count == 0 {
+            return Ok(());
+        }
+        Err(GpuError::CutShort {
+            adapter: self.gpu.adapter.name.clone(),
+            count,
         })
     }
 
@@ -142,11 +172,14 @@ fn read_slabs<T: bytemuck::Pod>(
     from: &Buffer<T>,
     slabs: &[u32],
 ) -> Result<Vec<T>, GpuError> {
-    let runs: Vec<std::ops::Range<usize>> = slabs
-        .iter()
-        .map(|&slab| slab as usize * grass.slab_rows..(slab as usize + 1) * grass.slab_rows)
-        .collect();
-    from.read_runs(&grass.gpu, &runs)
+    from.read_runs(&grass.gpu, &runs(grass, slabs))
+}
+
+/// The rows of slabs.
+fn runs(grass: &GpuGrass, slabs: &[u32]) -> Vec<Range<usize>> {
+    let rows = grass.slab_rows;
+    let slabs = slabs.iter().map(|&slab| slab as usize);
+    slabs.map(|slab| slab * rows..(slab + 1) * rows).collect()
 }
 
 #[cfg(test)]

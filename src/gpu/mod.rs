@@ -14,6 +14,7 @@ pub mod field_data;
 mod grass;
 mod grass_buffers;
 mod grass_state;
+mod late_count;
 pub mod layout;
 pub mod passes;
 mod texture;

@@ -5,7 +5,7 @@
 //! 65,535 times together. Hardware drivers take the device away from a dispatch that runs for
 //! seconds. So collide and relax run in turns of as many sweeps as stay below that, counted with
 //! the most rounds. Kernels that find their loops cut short all the same say so:
-//! [`Counts::cut_short`](super::Counts::cut_short). Shader: `shaders/turns.wgsl`.
+//! [`Counts::cut_short`](super::Counts::cut_short), which is read with the state, and late by a window. Shader: `shaders/turns.wgsl`.
 
 use super::grass_buffers::GrassBuffers;
 use super::passes::{Access, Groups, Kernel, Recording};

@@ -199,6 +199,30 @@ impl Engine {
         })
     }
 
+    /// Whether the device has run every loop of the sub-steps so far to its end. Waits for it.
+    ///
+    /// # Errors
+    ///
+    /// The device's.
+    pub fn check(&self) -> Result<(), GpuError> {
+        match self {
+            Self::Cpu(_) | Self::Reference(_) => Ok(()),
+            Self::Gpu(engine) => engine.grass.check(),
+        }
+    }
+
+    /// The same as far as it is known without waiting.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Engine::check`].
+    pub fn check_late(&self) -> Result<(), GpuError> {
+        match self {
+            Self::Cpu(_) | Self::Reference(_) => Ok(()),
+            Self::Gpu(engine) => engine.grass.check_late(),
+        }
+    }
+
     /// The hash of all ticks so far, where the engine promises its bits.
     pub fn state_hash(&self) -> Option<u64> {
         match self {

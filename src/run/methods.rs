@@ -2,6 +2,7 @@
 
 use crate::scene::method::{Collide, CubePer, Method, Push, Recovery, Sampling, Springs};
 use crate::scene::{Root, Solver};
+use crate::sim::reference;
 
 /// A setting of the solver with a name.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +21,27 @@ impl NamedMethod {
         let mut changed = solver.clone();
         self.apply(&mut changed);
         changed.root == solver.root
+    }
+
+    /// Whether the method says itself how long a sub-step is, whatever the scene's.
+    pub fn has_own_substep(&self) -> bool {
+        let substep_s = |scenes_own_s: f64| {
+            let mut solver = Solver {
+                substep_s: scenes_own_s,
+                ..Solver::default()
+            };
+            self.apply(&mut solver);
+            solver.substep_s
+        };
+        substep_s(0.5) == substep_s(0.25)
+    }
+
+    /// Whether the reference engine has settings of its own in place of all that the method sets.
+    pub fn is_lost_on_reference(&self) -> bool {
+        let scene = Solver::default();
+        let mut changed = scene.clone();
+        self.apply(&mut changed);
+        changed != scene && reference::solver(&changed) == reference::solver(&scene)
     }
 
     /// Gives a scene's solver the method's settings, and leaves the others.
@@ -359,5 +381,28 @@ mod tests {
             .collect();
         // `substep-120` is the default by another name, as one point of its curve.
         assert_eq!(solvers.len(), METHODS.len() - 1);
+    }
+
+    #[test]
+    fn methods_tell_what_other_options_are_lost_beside_them() {
+        let names = |told: fn(&NamedMethod) -> bool| -> Vec<&str> {
+            let methods = METHODS.iter().filter(|method| told(method));
+            methods.map(|method| method.name).collect()
+        };
+        let own_substep = names(NamedMethod::has_own_substep);
+        assert!(own_substep.iter().all(|name| name.starts_with("substep-")));
+        assert_eq!(own_substep.len(), 5);
+        let lost = names(NamedMethod::is_lost_on_reference);
+        for (name, is_lost) in [
+            (DEFAULT, false),
+            ("nearest-64", true),
+            ("paper", true),
+            ("rounds-1", true),
+            ("segments-4", false),
+            (ROOT_PAPER, false),
+            ("substep-60", false),
+        ] {
+            assert_eq!(lost.contains(&name), is_lost, "{name}");
+        }
     }
 }

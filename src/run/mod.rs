@@ -16,6 +16,7 @@ pub mod recording;
 pub mod release;
 pub mod report;
 pub mod scenario;
+mod spring_clamp;
 pub mod stage;
 pub mod swept;
 pub mod table;

@@ -12,6 +12,7 @@ use super::against::AgainstReference;
 use super::exit::Exit;
 use super::judge::Verdict;
 use super::scenario::Outcome;
+use super::spring_clamp::SpringClamp;
 
 /// Rises when a key changes its meaning or goes; new keys may come without.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -77,6 +78,8 @@ pub struct Scenario {
     pub state_hash: Option<String>,
     /// What each body's parts were tested by, in the order of names.
     pub colliders: Vec<Collider>,
+    /// What the stability clamp does to the literal springs; null for other springs.
+    pub literal_springs: Option<SpringClamp>,
     /// What the distance from the reference is worth; null without a comparison. No scenario fails by
     /// it.
     pub against_reference: Option<AgainstReference>,
@@ -203,6 +206,7 @@ impl Scenario {
                     analytic_parts,
                 })
                 .collect(),
+            literal_springs: SpringClamp::of(&meadow.scene.solver),
             against_reference: (outcome.difference.as_ref())
                 .map(|d| AgainstReference::of(d, meadow.scene.solver.substep_s)),
             broken: None,

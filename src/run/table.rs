@@ -18,6 +18,15 @@ pub fn write_table(report: &Report, out: &mut impl Write) -> io::Result<()> {
     for scenario in &report.scenarios {
         write_scenario(scenario, out)?;
     }
+    write_count(report, out)
+}
+
+/// Writes how many scenarios passed, and on what.
+///
+/// # Errors
+///
+/// The writer's.
+pub fn write_count(report: &Report, out: &mut impl Write) -> io::Result<()> {
     let passed = report.scenarios.iter().filter(|s| s.passed).count();
     let engine = report.engine;
     write!(
@@ -31,7 +40,12 @@ pub fn write_table(report: &Report, out: &mut impl Write) -> io::Result<()> {
     }
 }
 
-fn write_scenario(scenario: &Scenario, out: &mut impl Write) -> io::Result<()> {
+/// Writes what came of one scenario.
+///
+/// # Errors
+///
+/// The writer's.
+pub fn write_scenario(scenario: &Scenario, out: &mut impl Write) -> io::Result<()> {
     if let Some(error) = &scenario.error {
         return writeln!(out, "{}: NOT RUN\n  {error}\n", scenario.name);
     }
@@ -50,6 +64,9 @@ fn write_scenario(scenario: &Scenario, out: &mut impl Write) -> io::Result<()> {
     }
     for kind in colliders(&scenario.colliders) {
         writeln!(out, "  collider     {kind}")?;
+    }
+    if let Some(clamp) = &scenario.literal_springs {
+        writeln!(out, "  springs      literal: {}", clamp.words())?;
     }
     let passes = scenario.pass_ms.iter();
     write_list(

@@ -11,6 +11,7 @@ use super::limits;
 pub struct Body {
     /// Unique in the scene. Bodies act in the order of their names.
     pub name: String,
+    /// Its true shape.
     pub shape: Shape,
     /// Position of the body's origin, in metres.
     #[serde(default)]
@@ -23,13 +24,17 @@ pub struct Body {
     #[serde(default)]
     #[schemars(inner(range(min = limits::ANGLE.min, max = limits::ANGLE.max)))]
     pub rotation_deg: [f32; 3],
+    /// What moves it.
     #[serde(default)]
     pub motion: Motion,
+    /// How heavy it is.
     #[serde(default)]
     pub mass: Mass,
+    /// Friction coefficient, 0 for ice.
     #[serde(default = "default_friction")]
     #[schemars(range(min = limits::FRICTION.min, max = limits::FRICTION.max))]
     pub friction: f32,
+    /// Share of the speed that a bounce keeps.
     #[serde(default)]
     #[schemars(range(min = limits::FRACTION.min, max = limits::FRACTION.max))]
     pub restitution: f32,
@@ -58,10 +63,13 @@ fn default_rgb() -> [f32; 3] {
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum Shape {
+    /// A sphere.
     Ball {
+        /// Metres.
         #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         radius_m: f32,
     },
+    /// A cuboid.
     Box {
         /// Full extents along x, y, z.
         #[schemars(inner(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max)))]
@@ -69,6 +77,7 @@ pub enum Shape {
     },
     /// Axis along y.
     Capsule {
+        /// Of the straight part and of the two caps, in metres.
         #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         radius_m: f32,
         /// Length of the straight part, without the two caps.
@@ -77,13 +86,16 @@ pub enum Shape {
     },
     /// Axis along y.
     Cylinder {
+        /// Metres.
         #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         radius_m: f32,
+        /// Full height, in metres.
         #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         height_m: f32,
     },
     /// The convex hull of at least four points that do not lie in one plane.
     ConvexHull {
+        /// From the body's origin.
         #[schemars(length(min = limits::HULL_POINTS[0], max = limits::HULL_POINTS[1]))]
         points_m: Vec<[f32; 3]>,
     },
@@ -92,6 +104,7 @@ pub enum Shape {
     Mesh {
         /// Path, looked up in the scene's folder and then in the asset folders.
         file: String,
+        /// Metres of one unit of the file.
         #[serde(default = "unit_scale")]
         #[schemars(range(min = limits::MESH_SCALE.min, max = limits::MESH_SCALE.max))]
         scale: f32,
@@ -102,6 +115,7 @@ pub enum Shape {
     },
     /// Several rigidly joined shapes; no meshes, vehicles or compounds inside.
     Compound {
+        /// The shapes, with their places.
         #[schemars(length(min = 1, max = limits::COMPOUND_PARTS))]
         parts: Vec<Part>,
     },
@@ -110,8 +124,10 @@ pub enum Shape {
         /// Full extents of the chassis along x, y, z.
         #[schemars(inner(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max)))]
         chassis_m: [f32; 3],
+        /// Metres.
         #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         wheel_radius_m: f32,
+        /// Along the axle, in metres.
         #[schemars(range(min = limits::BODY_LENGTH.min, max = limits::BODY_LENGTH.max))]
         wheel_width_m: f32,
     },
@@ -129,9 +145,12 @@ fn default_max_parts() -> u32 {
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
+    /// Its shape.
     pub shape: Shape,
+    /// Place of its origin from the body's.
     #[serde(default)]
     pub position_m: [f32; 3],
+    /// Turns about x, then y, then z of the body, in degrees.
     #[serde(default)]
     #[schemars(inner(range(min = limits::ANGLE.min, max = limits::ANGLE.max)))]
     pub rotation_deg: [f32; 3],
@@ -146,8 +165,10 @@ pub enum Motion {
     Free,
     /// As `Free`, with a velocity at the start.
     Thrown {
+        /// Along x, y and z of the world.
         #[schemars(inner(range(min = limits::VELOCITY.min, max = limits::VELOCITY.max)))]
         velocity_m_per_s: [f32; 3],
+        /// About x, y and z of the world.
         #[serde(default)]
         #[schemars(inner(range(min = limits::SPIN.min, max = limits::SPIN.max)))]
         spin_deg_per_s: [f32; 3],
@@ -156,6 +177,7 @@ pub enum Motion {
     Fixed,
     /// Follows way points by time, whatever stands in its way; smooth in between.
     Path {
+        /// Where it is when.
         #[schemars(length(min = 2, max = limits::WAYPOINTS))]
         waypoints: Vec<Waypoint>,
         /// Start again after the last way point.
@@ -173,6 +195,7 @@ pub struct Waypoint {
     /// Place of the body's origin; y counts from the ground if the body says `above_ground`.
     #[schemars(inner(range(min = limits::PLACE.min, max = limits::PLACE.max)))]
     pub position_m: [f64; 3],
+    /// Turns about x, then y, then z of the world, in degrees.
     #[serde(default)]
     #[schemars(inner(range(min = limits::ANGLE.min, max = limits::ANGLE.max)))]
     pub rotation_deg: [f32; 3],
@@ -182,8 +205,9 @@ pub struct Waypoint {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum Mass {
+    /// Kilograms, 1e-6 to 1e7.
     Kilograms(f32),
-    /// Kilograms per cubic metre.
+    /// Kilograms per cubic metre, 0.01 to 50000.
     Density(f32),
 }
 

@@ -9,6 +9,7 @@ use super::limits;
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
+    /// Unique in the scene; for `sward render --camera`.
     pub name: String,
     /// Place of the eye, in metres; relative to the followed body if there is one.
     #[schemars(inner(range(min = limits::PLACE.min, max = limits::PLACE.max)))]

@@ -112,7 +112,7 @@ impl SceneError {
     }
 
     /// An error about a file or folder as a whole.
-    pub(super) fn whole(file: &str, problem: Problem) -> Self {
+    pub fn whole(file: &str, problem: Problem) -> Self {
         Self::new(file, Position { line: 0, column: 0 }, "", problem)
     }
 }

@@ -50,6 +50,7 @@ impl Default for Grass {
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Species {
+    /// For people.
     pub name: String,
     /// What it looks like.
     pub form: Form,
@@ -112,6 +113,7 @@ pub enum Form {
         /// Diameter of the head, in metres.
         #[schemars(range(min = limits::PLANT_WIDTH.min, max = limits::PLANT_WIDTH.max))]
         head_m: f32,
+        /// Petals of the head.
         #[serde(default = "thirteen")]
         #[schemars(range(min = limits::PETALS.min, max = limits::PETALS.max))]
         petals: u32,

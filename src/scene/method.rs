@@ -11,11 +11,17 @@ use super::limits;
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Method {
+    /// What a vertex is tested against.
     pub collide: Collide,
+    /// How a depth cube's face is read between its texels.
     pub sampling: Sampling,
+    /// What a depth cube is drawn of.
     pub cube_per: CubePer,
+    /// How far a vertex inside a depth cube is pushed.
     pub push: Push,
+    /// How a pushed plant gets its shape back within a sub-step.
     pub springs: Springs,
+    /// How a plant returns to its wind pose.
     pub recovery: Recovery,
     /// How far a body may travel in one sweep of the grass, over its half thickness.
     #[schemars(range(min = limits::SWEEP_SHARE.min, max = limits::SWEEP_SHARE.max))]

@@ -55,8 +55,11 @@ pub struct Scene {
     /// Simulated length of a headless run, in seconds.
     #[schemars(range(min = limits::DURATION.min, max = limits::DURATION.max))]
     pub duration_s: f64,
+    /// The ground.
     pub terrain: Terrain,
+    /// What grows on it.
     pub grass: Grass,
+    /// Wind at the start.
     pub wind: Wind,
     /// Rigid bodies present from the start. Names are unique in the scene.
     pub bodies: Vec<Body>,
@@ -66,6 +69,7 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// What must hold for the scene to pass.
     pub expect: Vec<Expectation>,
+    /// Settings of the simulation.
     pub solver: Solver,
 }
 

@@ -89,6 +89,11 @@ impl<'a> Positions<'a> {
         self.place(found.unwrap_or(0))
     }
 
+    /// Whether a round bracket is closed at a byte.
+    pub fn is_closing(&self, offset: usize) -> bool {
+        self.source.as_bytes().get(offset) == Some(&b')')
+    }
+
     /// The byte at a line and column, or the text's end.
     pub fn offset(&self, position: Position) -> usize {
         let line_start = self

@@ -49,7 +49,9 @@ pub struct Solver {
     /// Entries of the table of resting blade shapes along stiffness and lean, 2 to 512 each.
     #[schemars(inner(range(min = limits::BLADE_TABLE.min, max = limits::BLADE_TABLE.max)))]
     pub blade_table: [u32; 2],
+    /// Rounds of the random numbers from which plants are made.
     pub philox: PhiloxRounds,
+    /// Stiffness of a blade's root hinge.
     pub root: Root,
     /// Which formulas are used where there are several.
     pub method: Method,
@@ -81,6 +83,7 @@ impl Default for Solver {
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, JsonSchema, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PhiloxRounds {
+    /// Seven rounds, which pass statistical tests.
     #[default]
     Seven,
     /// Three rounds, as P15 has it: neighbouring triangles stay correlated.

@@ -54,11 +54,7 @@ impl Stop<'_> {
                 (self.start, in_group(field), what.to_owned())
             }
             Error::MissingStructField { field, .. } => {
-                // The reader may stand behind the closing bracket; one character back is inside.
-                let [start, end] = [self.start, self.end].map(|p| self.positions.offset(p));
-                let group = self
-                    .positions
-                    .group_around(start.min(end.saturating_sub(1)));
+                let group = self.ended_group();
                 let what = "is missing and has no default; add it here";
                 (group.position, join(&group.path, field), what.to_owned())
             }
@@ -71,6 +67,17 @@ impl Stop<'_> {
             }
             _ => return None,
         })
+    }
+
+    /// The group whose end the reader has found, or stands behind.
+    fn ended_group(&self) -> Place<'_> {
+        let [start, end] = [self.start, self.end].map(|p| self.positions.offset(p));
+        let at = match self.positions.is_closing(end) {
+            // Before its bracket; a value that ends right here is within the group.
+            true => end + 1,
+            false => start.min(end.saturating_sub(1)),
+        };
+        self.positions.group_around(at)
     }
 
     /// A value of the wrong type or length.

@@ -9,6 +9,7 @@ use super::limits;
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Terrain {
+    /// Where its heights come from.
     pub ground: Ground,
     /// World x and z of the ground's middle. The ground, its plants and its colours are the same
     /// wherever it lies.
@@ -18,12 +19,13 @@ pub struct Terrain {
     /// proportions; the first row lies at the smallest z. Looked up like every asset. Without one
     /// the ground is coloured with patches of the three colours below.
     pub base_map: Option<String>,
-    /// Colours of the base map, linear RGB in 0…1: lush, dry, bare soil. A plant takes the colour
-    /// of the ground under it.
+    /// Colour of lush patches, linear RGB in 0…1. A plant takes the colour of the ground under it.
     #[schemars(inner(range(min = limits::FRACTION.min, max = limits::FRACTION.max)))]
     pub lush_rgb: [f32; 3],
+    /// Colour of dry patches.
     #[schemars(inner(range(min = limits::FRACTION.min, max = limits::FRACTION.max)))]
     pub dry_rgb: [f32; 3],
+    /// Colour of bare soil, also between the plants.
     #[schemars(inner(range(min = limits::FRACTION.min, max = limits::FRACTION.max)))]
     pub soil_rgb: [f32; 3],
     /// Friction coefficient of the ground, 0 or more.
@@ -61,8 +63,10 @@ pub enum Ground {
     },
     /// Smooth rolling ground from value noise, `octaves` of it, each half as high and half as long.
     Rolling {
+        /// Extent along x and z, in metres; rounded up to whole spacings.
         #[schemars(inner(range(min = limits::TERRAIN_SIDE.min, max = limits::TERRAIN_SIDE.max)))]
         size_m: [f32; 2],
+        /// Distance of the height samples, in metres.
         #[serde(default = "one_metre")]
         #[schemars(range(min = limits::HEIGHT_SPACING.min, max = limits::HEIGHT_SPACING.max))]
         spacing_m: f32,
@@ -72,9 +76,11 @@ pub enum Ground {
         /// Wavelength of the first octave, in metres.
         #[schemars(range(min = limits::WAVELENGTH.min, max = limits::WAVELENGTH.max))]
         wavelength_m: f32,
+        /// Layers of noise.
         #[serde(default = "three_octaves")]
         #[schemars(range(min = limits::OCTAVES.min, max = limits::OCTAVES.max))]
         octaves: u32,
+        /// Another seed is another ground.
         #[serde(default)]
         seed: u32,
     },
@@ -82,6 +88,7 @@ pub enum Ground {
     HeightMap {
         /// Path, looked up in the scene's folder and then in the asset folders.
         file: String,
+        /// Distance of two texels on the ground, in metres.
         #[schemars(range(min = limits::HEIGHT_SPACING.min, max = limits::HEIGHT_SPACING.max))]
         spacing_m: f32,
         /// Height of white above black, in metres.

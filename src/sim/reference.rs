@@ -39,9 +39,30 @@ pub fn refined(scene: &Solver, grass_steps: u32, sweep_share: f64) -> Solver {
         method: Method {
             collide: Collide::Exact,
             sweep_share,
-            grass_steps,
+            // The bodies keep the scene's own step, or free ones would go another way.
+            grass_steps: grass_steps * scene.method.grass_steps,
             ..Method::default()
         },
         ..scene.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bodies_keep_their_step() {
+        let mut scene = Solver::default();
+        let body_step_s = |s: &Solver| s.substep_s * f64::from(s.method.grass_steps);
+        for grass_steps in [1, 4] {
+            scene.substep_s /= f64::from(grass_steps);
+            scene.method.grass_steps = grass_steps;
+            let step_s = body_step_s(&solver(&scene));
+            assert!(
+                (step_s - body_step_s(&scene)).abs() < 1e-15,
+                "{grass_steps}"
+            );
+        }
     }
 }

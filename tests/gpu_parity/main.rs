@@ -70,6 +70,10 @@ const CHECKS: &[(&str, Check)] = &[
         runs::a_still_meadow_dispatches_nothing,
     ),
     (
+        "a_restored_collision_goes_on_with_the_same_bits",
+        runs::a_restored_collision_goes_on_with_the_same_bits,
+    ),
+    (
         "a_full_device_refuses_and_counts",
         runs::a_full_device_refuses_and_counts,
     ),

@@ -67,12 +67,47 @@ fn a_recorded_run_is_verified() {
     assert_eq!(code(&replay), 1, "{}", said(&replay));
     let printed = String::from_utf8_lossy(&replay.stdout).into_owned();
     assert!(
+        printed.starts_with("roll: DIFFERS from the recording (grass and bodies)\n"),
+        "{printed}"
+    );
+    assert!(
         printed.contains("replay: tick 1 at 0.008333 s"),
         "{printed}"
     );
     let rows = std::fs::read_to_string(&trace).expect("the trace");
     assert_eq!(rows.lines().count(), 61, "a row per sub-step and the head");
     assert_eq!(code(&sward(&["replay", &faster])), 0, "without --verify");
+}
+
+/// What the scene expects has no say in it, and does not look as if it had.
+#[test]
+fn a_verified_replay_of_a_failed_run_is_no_failure() {
+    let folder = folder("verified_failure");
+    let scene = file(
+        &folder,
+        "fails.ron",
+        &ROLL.replace("at_least: 1", "at_least: 1000"),
+    );
+    let recording = text(&folder.join("fails.recording"));
+    let run = sward(&["run", &scene, "--engine", "cpu", "--record", &recording]);
+    assert_eq!(code(&run), 1, "{}", said(&run));
+    let replay = sward(&["replay", &recording, "--verify"]);
+    assert_eq!(code(&replay), 0, "{}", said(&replay));
+    let printed = String::from_utf8_lossy(&replay.stdout).into_owned();
+    assert!(printed.starts_with("fails: as recorded\n"), "{printed}");
+    assert!(
+        printed.contains("60 of 60 ticks compared, all equal"),
+        "{printed}"
+    );
+    assert!(
+        printed.contains("not judged by --verify: 1 of"),
+        "{printed}"
+    );
+    assert!(!printed.contains("FAIL"), "{printed}");
+    let judged = sward(&["replay", &recording]);
+    assert_eq!(code(&judged), 1);
+    let printed = String::from_utf8_lossy(&judged.stdout).into_owned();
+    assert!(printed.contains("fails: FAILED"), "{printed}");
 }
 
 #[test]

@@ -16,14 +16,18 @@ const GLANCE: Duration = Duration::from_millis(30);
 
 /// What these tests lack on this machine.
 pub fn missing() -> Option<String> {
-    for program in ["Xvfb", "xdotool"] {
-        let paths = std::env::var_os("PATH").unwrap_or_default();
-        if !std::env::split_paths(&paths).any(|folder| folder.join(program).is_file()) {
-            return Some(format!("{program} is not installed"));
-        }
+    let programs = ["Xvfb", "xdotool"];
+    if let Some(program) = programs.into_iter().find(|program| !is_installed(program)) {
+        return Some(format!("{program} is not installed"));
     }
     let gpu = sward::gpu::Gpu::headless();
     gpu.err().map(|error| error.to_string())
+}
+
+/// Whether a program is on the path.
+pub fn is_installed(program: &str) -> bool {
+    let paths = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&paths).any(|folder| folder.join(program).is_file())
 }
 
 /// An empty folder of a trial's own.
@@ -56,11 +60,43 @@ impl Drop for Process {
     }
 }
 
+/// A display of its own.
+pub struct Server {
+    _process: Process,
+    display: String,
+}
+
+impl Server {
+    pub fn start() -> Result<Self, Failed> {
+        let mut process = Process(
+            Command::new("Xvfb")
+                .args(["-displayfd", "1", "-screen", "0", "1024x768x24"])
+                // Else the server starts anew, deaf for a moment, whenever its last client leaves:
+                // an `xdotool` that looks for a window not yet there.
+                .args(["-noreset", "-nolisten", "tcp"])
+                .stdout(Stdio::piped())
+                .stderr(Stdio::null())
+                .spawn()?,
+        );
+        let stdout = process.0.stdout.take().ok_or("Xvfb has no stdout")?;
+        let mut number = String::new();
+        BufReader::new(stdout).read_line(&mut number)?;
+        Ok(Self {
+            _process: process,
+            display: format!(":{}", number.trim()),
+        })
+    }
+
+    /// As the variable `DISPLAY` has it.
+    pub fn display(&self) -> &str {
+        &self.display
+    }
+}
+
 /// The program's window, alone on a display.
 pub struct Window {
     program: Process,
-    _server: Process,
-    display: String,
+    server: Server,
     id: String,
     folder: PathBuf,
     size: [u32; 2],
@@ -78,27 +114,14 @@ pub struct Shot {
 impl Window {
     /// Starts a display and the program, and waits for its window.
     pub fn open(folder: &Path, scene: &str, size: [u32; 2]) -> Result<Self, Failed> {
-        let mut server = Process(
-            Command::new("Xvfb")
-                .args(["-displayfd", "1", "-screen", "0", "1024x768x24"])
-                // Else the server starts anew, deaf for a moment, whenever its last client leaves:
-                // an `xdotool` that looks for a window not yet there.
-                .args(["-noreset", "-nolisten", "tcp"])
-                .stdout(Stdio::piped())
-                .stderr(Stdio::null())
-                .spawn()?,
-        );
-        let stdout = server.0.stdout.take().ok_or("Xvfb has no stdout")?;
-        let mut number = String::new();
-        BufReader::new(stdout).read_line(&mut number)?;
-        let display = format!(":{}", number.trim());
+        let server = Server::start()?;
         let runtime = folder.join("runtime");
         fs::create_dir_all(&runtime)?;
         let program = Command::new(env!("CARGO_BIN_EXE_sward"))
             .args(["view", scene, "--size", &format!("{}x{}", size[0], size[1])])
             .args(["--out", "shots"])
             .current_dir(folder)
-            .env("DISPLAY", &display)
+            .env("DISPLAY", server.display())
             .env("XDG_RUNTIME_DIR", &runtime)
             .env_remove("WAYLAND_DISPLAY")
             .env_remove("WAYLAND_SOCKET")
@@ -107,8 +130,7 @@ impl Window {
             .spawn()?;
         let mut window = Self {
             program: Process(program),
-            _server: server,
-            display,
+            server,
             id: String::new(),
             folder: folder.to_owned(),
             size,
@@ -237,7 +259,7 @@ impl Window {
     fn xdotool(&self, arguments: &[&str]) -> Result<String, Failed> {
         let output = Command::new("xdotool")
             .args(arguments)
-            .env("DISPLAY", &self.display)
+            .env("DISPLAY", self.server.display())
             .stdin(Stdio::null())
             .output()?;
         if !output.status.success() {

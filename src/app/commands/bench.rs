@@ -49,6 +49,10 @@ const MILLION: &str = "million_blades";
 
 /// Runs the bench and prints its tables.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
+    if matches!(arguments.what, Bench::Terrain) && arguments.engine.is_chosen() {
+        let text = "bench terrain runs no engine: leave --engine and --require-gpu out";
+        return Err(Failure::Usage(text.into()));
+    }
     // A place that cannot be written to is told before time is spent on measuring.
     if let Some(folder) = &arguments.out {
         make_folder(folder)?;

@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use crate::app::Failure;
+use crate::app::values::{number, whole};
 use crate::field::blade_shape::{self, BladeShape};
 use crate::run::Exit;
 use crate::scene::Root;
@@ -14,10 +15,15 @@ use crate::scene::Root;
 #[derive(Args, Debug)]
 pub struct Arguments {
     /// Rigid segments of the blade, 1 to 64
-    #[arg(long, value_name = "N")]
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        value_parser = |text: &str| whole(text, 1, 64)
+    )]
     segments: u32,
     /// Spring constant over segment weight and length, k′
-    #[arg(long, value_name = "K", allow_negative_numbers = true)]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = number)]
     stiffness: f64,
     /// Stiffness of the root hinge: that of the others, as in the paper, or twice that, which
     /// agrees with a continuous beam and is what scenes have unless they say otherwise
@@ -28,7 +34,8 @@ pub struct Arguments {
         long,
         value_name = "DEGREES",
         default_value_t = 0.0,
-        allow_negative_numbers = true
+        allow_negative_numbers = true,
+        value_parser = number
     )]
     lean: f64,
     /// Print JSON

@@ -19,17 +19,29 @@ pub struct Arguments {
     #[arg(value_name = "FOLDER")]
     folders: Vec<PathBuf>,
     /// Another folder in which scenes' assets are looked up; may be repeated
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", requires = "folders")]
     assets: Vec<PathBuf>,
 }
 
 /// Prints a line per scene. Invalid scenes are named on stderr.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
+    scene_file::check_folders(&arguments.assets)?;
     let mut scenes: Vec<PathBuf> = Vec::new();
     if arguments.folders.is_empty() {
         scenes.extend(SCENES.iter().map(|scene| PathBuf::from(scene.name)));
     }
     for folder in &arguments.folders {
+        if !folder.is_dir() {
+            let what = if folder.exists() {
+                "a file"
+            } else {
+                "not there"
+            };
+            let folder = folder.display();
+            return Err(Failure::UnknownScene(format!(
+                "{folder}: it is {what}; give a folder of scenes, or none for the program's own"
+            )));
+        }
         scenes.extend(scene_files(folder)?);
     }
     let mut exits = Vec::new();

@@ -7,12 +7,12 @@ mod bundle;
 pub mod doctor;
 mod follow;
 pub mod list;
-mod outputs;
+pub(super) mod outputs;
 pub mod render;
 pub mod replay;
 pub mod report;
 pub mod run;
-mod scene_file;
+pub(super) mod scene_file;
 mod schema;
 pub mod view;
 

@@ -67,6 +67,10 @@ impl ResultFile {
 /// A folder that cannot be made or written to; one in a folder that does not exist.
 pub fn make_folder(folder: &Path) -> Result<(), Failure> {
     let failed = |e| Failure::file(folder, e);
+    if folder.exists() && !folder.is_dir() {
+        let text = "a file is there; give a folder";
+        return Err(failed(io::Error::new(io::ErrorKind::NotADirectory, text)));
+    }
     if !folder.is_dir() {
         folder_exists(folder.parent()).map_err(failed)?;
         fs::create_dir(folder).map_err(failed)?;
@@ -99,5 +103,53 @@ pub fn finish_trace(trace: Option<FileTrace>, path: Option<&Path>) -> Result<(),
     match (trace, path) {
         (Some(trace), Some(path)) => trace.finish().map_err(|e| Failure::file(path, e)),
         _ => Ok(()),
+    }
+}
+
+/// Refuses options that would write one file twice, or over a file that the command reads.
+///
+/// # Errors
+///
+/// Two options of one file, by name.
+pub fn refuse_one_file_for_two(
+    outputs: &[(&str, Option<&Path>)],
+    inputs: &[PathBuf],
+) -> Result<(), Failure> {
+    let outputs = outputs
+        .iter()
+        .filter_map(|(option, path)| Some((*option, (*path)?)));
+    let outputs: Vec<(&str, &Path)> = outputs.collect();
+    for (number, (option, path)) in outputs.iter().enumerate() {
+        let place = place(path);
+        if inputs.iter().any(|input| self::place(input) == place) {
+            let text = format!("{option} {} would overwrite what is read", path.display());
+            return Err(Failure::Usage(format!("{text}: give another file")));
+        }
+        let others = outputs[..number].iter();
+        if let Some((other, _)) = others
+            .clone()
+            .find(|(_, other)| self::place(other) == place)
+        {
+            let file = path.display();
+            return Err(Failure::Usage(format!(
+                "{other} and {option} would both write {file}: give each a file of its own"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// A path without links and dots, as far as it exists.
+fn place(path: &Path) -> PathBuf {
+    if let Ok(whole) = path.canonicalize() {
+        return whole;
+    }
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new(".")).canonicalize();
+    match (folder, path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => path.to_owned(),
     }
 }

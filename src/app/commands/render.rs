@@ -11,6 +11,7 @@ use super::scene_file;
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
 use crate::app::progress::Progress;
+use crate::app::values::{number, whole};
 use crate::gpu::Gpu;
 use crate::render::{Animation, Picture, PictureTarget};
 use crate::run::{Exit, Stage};
@@ -23,13 +24,26 @@ pub struct Arguments {
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
     /// Simulated time of the first picture
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = number)]
     at: f64,
     /// Draw N pictures, as FILE_0000.png and so on or as one animation where FILE ends in .apng
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true,
+        value_parser = |text: &str| whole(text, 1, MOST_FRAMES)
+    )]
     frames: u32,
-    /// Pictures per simulated second
-    #[arg(long, value_name = "N", default_value_t = 30)]
+    /// Pictures per simulated second, of a sequence
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 30,
+        requires = "frames",
+        allow_negative_numbers = true,
+        value_parser = |text: &str| whole(text, 1, MOST_HZ.into()).map(|hz| hz as u16)
+    )]
     hz: u16,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
@@ -54,15 +68,18 @@ pub struct Arguments {
 const MOST_PIXELS: u32 = 8192;
 /// Most pictures of a sequence: their names count to 9999.
 const MOST_FRAMES: u32 = 10_000;
+/// Most pictures per second.
+const MOST_HZ: u16 = 1000;
 
 /// Draws the pictures and prints the names of the files.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
     check(arguments)?;
+    let choice = arguments.engine.choice()?;
     let animated = is_animation(&arguments.out)?;
+    scene_file::check_folders(&arguments.assets)?;
     let loaded = scene_file::load(&arguments.scene, &arguments.assets)?;
     let gpu = Gpu::headless()?;
     let target = PictureTarget::new(&gpu, arguments.size)?;
-    let choice = arguments.engine.choice()?;
     let mut stage = Stage::new(&gpu, &loaded, choice, PictureTarget::FORMAT, arguments.size)?;
     stage.camera(arguments.camera.as_deref())?;
     // A place that cannot be written to is told before time is spent on pictures.
@@ -92,18 +109,12 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
 
 fn check(arguments: &Arguments) -> Result<(), Failure> {
     let usage = |text| Err(Failure::Usage(text));
-    let Arguments { at, frames, hz, .. } = arguments;
+    let at = &arguments.at;
     if !(0.0..=limits::DURATION.max).contains(at) {
         return usage(format!(
             "--at {at}: give 0 to {} seconds",
             limits::DURATION.max
         ));
-    }
-    if !(1..=MOST_FRAMES).contains(frames) {
-        return usage(format!("--frames {frames}: give 1 to {MOST_FRAMES}"));
-    }
-    if !(1..=1000).contains(hz) {
-        return usage(format!("--hz {hz}: give 1 to 1000 pictures per second"));
     }
     Ok(())
 }
@@ -191,6 +202,7 @@ impl Shoot<'_> {
             self.stage.tick()?;
             self.progress.set(self.stage.meadow().time_s() / last_s);
         }
+        self.stage.engine().check()?;
         let view = self.stage.camera(self.arguments.camera.as_deref())?;
         let overlay = self.arguments.overlay;
         (self.stage).draw(self.gpu, &view, &self.target.view, overlay)?;

@@ -7,7 +7,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::follow::Follower;
-use super::outputs::{ResultFile, finish_trace};
+use super::outputs::{ResultFile, finish_trace, refuse_one_file_for_two};
+use super::scene_file;
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
 use crate::app::progress::Progress;
@@ -80,6 +81,9 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
                     --engine cpu or gpu, or `sward run --engine reference` of the scene";
         return Err(Failure::Usage(text.into()));
     }
+    scene_file::check_folders(&arguments.assets)?;
+    let read = std::slice::from_ref(&arguments.file);
+    refuse_one_file_for_two(&[("--trace", arguments.trace.as_deref())], read)?;
     let mut trace = match &arguments.trace {
         Some(path) => Some(ResultFile::create(path)?.into_trace()),
         None => None,
@@ -156,25 +160,50 @@ fn print(replayed: &Replayed<'_>, json: bool, out: &mut impl Write) -> io::Resul
         serde_json::to_writer_pretty(&mut *out, replayed)?;
         return writeln!(out);
     }
-    table::write_table(replayed.report, out)?;
-    let Some(comparison) = &replayed.replay else {
-        return Ok(());
-    };
+    match &replayed.replay {
+        Some(comparison) => write_comparison(comparison, replayed.report, out),
+        None => table::write_table(replayed.report, out),
+    }
+}
+
+/// Says whether the ticks are equal, which is all that was asked. What the scene expects is judged by
+/// `run`, and by `replay` alone.
+fn write_comparison(
+    comparison: &Comparison,
+    report: &Report,
+    out: &mut impl Write,
+) -> io::Result<()> {
     let covered = match comparison.hashed {
         Hashed::GrassAndBodies => "grass and bodies",
-        Hashed::Bodies => "bodies",
+        Hashed::Bodies => "bodies alone",
     };
+    let names: Vec<&str> = report.scenarios.iter().map(|s| s.name.as_str()).collect();
+    let name = names.join(", ");
+    let (compared, recorded) = (comparison.ticks_compared, comparison.ticks_recorded);
     match &comparison.first_difference {
         Some(first) => writeln!(
             out,
-            "replay: tick {} at {:.6} s is the first that differs ({covered}): {} was recorded, \
-             {} found",
+            "{name}: DIFFERS from the recording ({covered})\nreplay: tick {} at {:.6} s is the first \
+             that differs: {} was recorded, {} found",
             first.tick, first.time_s, first.recorded, first.found
-        ),
+        )?,
+        None if comparison.equal => writeln!(
+            out,
+            "{name}: as recorded\nreplay: {compared} of {recorded} ticks compared, all equal ({covered})"
+        )?,
         None => writeln!(
             out,
-            "replay: {} of {} ticks compared, all equal ({covered})",
-            comparison.ticks_compared, comparison.ticks_recorded
-        ),
+            "{name}: CUT SHORT\nreplay: {compared} of {recorded} ticks compared, all equal ({covered})"
+        )?,
     }
+    let expectations = report.scenarios.iter().flat_map(|s| &s.expectations);
+    let missed = expectations.filter(|e| e.passed == Some(false)).count();
+    if missed > 0 {
+        writeln!(
+            out,
+            "not judged by --verify: {missed} of the scene's expectations do not hold; `sward replay` \
+             without it tells which"
+        )?;
+    }
+    Ok(())
 }

@@ -1,5 +1,6 @@
 //! `sward report`.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -12,8 +13,8 @@ use crate::app::Failure;
 use crate::app::progress::Progress;
 use crate::gpu::{Gpu, GpuError};
 use crate::run::accuracy::{
-    self, COST_SCENE, Plan, Planned, Report, Store, Stored, cost_methods, error_plot, scenes,
-    summary_plot, write_markdown,
+    self, COST_SCENE, Dropped, Plan, Planned, Report, Store, Stored, cost_methods, error_plot,
+    scenes, summary_plot, write_markdown,
 };
 use crate::run::methods::{self, NamedMethod};
 use crate::run::{Device, Exit};
@@ -51,7 +52,8 @@ struct Accuracy {
     /// Leave the graphics adapter alone; rounding is not measured then
     #[arg(long)]
     no_gpu: bool,
-    /// Also write points.csv, accuracy.md and plots as SVG into this folder
+    /// Also write points.csv, accuracy.md and plots as SVG into this folder; refused where it has
+    /// points of an earlier report that this one does not ask for
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Keep the points that the folder already has, as after an interrupted report; those of another
@@ -62,6 +64,8 @@ struct Accuracy {
 
 /// File of the measured points.
 const POINTS: &str = "points.csv";
+/// Most methods of a scene that a message names.
+const MOST_NAMED: usize = 4;
 /// File of the report.
 const MARKDOWN: &str = "accuracy.md";
 
@@ -72,16 +76,23 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
         list(out)?;
         return Ok(Exit::Ok);
     }
+    if arguments.quick && !arguments.scene.is_empty() && !arguments.method.is_empty() {
+        let text = "--quick chooses scenes and methods, and both are given by --scene and --method: \
+                    leave --quick out";
+        return Err(Failure::Usage(text.into()));
+    }
     let plan = plan(arguments)?;
+    let mut stored = Stored::default();
     if let Some(folder) = &arguments.out {
         make_folder(folder)?;
+        stored = stored_points(&folder.join(POINTS), &plan)?;
     }
     let device = if arguments.no_gpu {
         None
     } else {
         any_adapter()?
     };
-    let mut store = open_store(arguments, &plan, device.as_ref())?;
+    let mut store = open_store(arguments, &plan, stored, device.as_ref())?;
     let progress = Progress::new("report accuracy");
     let report = accuracy::run(&plan, &mut store, device.as_ref(), |done| {
         progress.set(done)
@@ -211,10 +222,47 @@ fn named_nowhere(error: SceneError) -> Failure {
     }
 }
 
+/// What the folder has, if this report keeps or measures all of it: whoever asks for less may have
+/// forgotten that hours of work lie there.
+fn stored_points(points: &Path, plan: &Plan) -> Result<Stored, Failure> {
+    let stored = Stored::read(points).map_err(|error| match error.kind() {
+        io::ErrorKind::InvalidData => Failure::Usage(format!(
+            "--out: {} is there, but {error}; take another --out",
+            points.display()
+        )),
+        _ => Failure::file(points, error),
+    })?;
+    let left_out = stored.left_out_by(plan);
+    if left_out.is_empty() {
+        return Ok(stored);
+    }
+    let count: usize = left_out.values().map(BTreeSet::len).sum();
+    let scenes: Vec<String> = left_out.iter().map(lost_of_scene).collect();
+    Err(Failure::Usage(format!(
+        "--out: {} has {count} points that this report leaves out and would overwrite: {}. Ask for \
+         them too (--resume keeps what is measured), or take another --out",
+        points.display(),
+        scenes.join("; ")
+    )))
+}
+
+fn lost_of_scene((scene, methods): (&String, &BTreeSet<String>)) -> String {
+    let named: Vec<&str> = methods.iter().map(String::as_str).collect();
+    match named.get(MOST_NAMED..) {
+        Some(more @ [_, ..]) => format!(
+            "`{scene}` ({} and {} more)",
+            named[..MOST_NAMED].join(", "),
+            more.len()
+        ),
+        _ => format!("`{scene}` ({})", named.join(", ")),
+    }
+}
+
 /// Opens every file that will be written, so that none is refused after hours.
 fn open_store(
     arguments: &Accuracy,
     plan: &Plan,
+    mut stored: Stored,
     device: Option<&Device>,
 ) -> Result<Store, Failure> {
     let Some(folder) = &arguments.out else {
@@ -224,48 +272,38 @@ fn open_store(
     (File::options().append(true).create(true).open(&markdown))
         .map_err(|error| Failure::file(&markdown, error))?;
     let points = folder.join(POINTS);
-    let stored = if arguments.resume {
-        resumed(&points, plan, device)?
+    if arguments.resume {
+        let dropped = stored.keep(&plan.keys(device), &plan.program_name());
+        warn_of(&dropped, stored.broken_lines, &points, plan);
     } else {
-        Stored::default()
-    };
+        stored = Stored::default();
+    }
     Store::create(&points, stored).map_err(|error| Failure::file(&points, error))
 }
 
-/// The points of an earlier report that still hold.
-fn resumed(points: &Path, plan: &Plan, device: Option<&Device>) -> Result<Stored, Failure> {
-    let stored = Stored::read(points).map_err(|error| Failure::file(points, error));
-    let mut stored = stored?;
-    let left_out = stored.left_out_by(plan);
-    if !left_out.is_empty() {
-        let scenes = left_out.iter().map(|(scene, methods)| match methods[..] {
-            [] => format!("`{scene}`"),
-            _ => format!("`{scene}` ({})", methods.join(", ")),
-        });
-        let scenes: Vec<String> = scenes.collect();
-        return Err(Failure::Usage(format!(
-            "--resume: {} has points that this report would lose: {}. Ask for them too, or take \
-             another --out",
-            points.display(),
-            scenes.join("; ")
-        )));
-    }
-    let others = stored.keep(&plan.keys(device));
-    if others > 0 {
+/// Says what of an earlier report does not hold any more.
+fn warn_of(dropped: &Dropped, broken_lines: usize, points: &Path, plan: &Plan) {
+    let points = points.display();
+    for (program, count) in &dropped.of_programs {
+        let made_by = match program.as_str() {
+            "" => "an older sward",
+            program => program,
+        };
         log::warn!(
-            "{}: {others} points are of another program, scene, setting or adapter; they are measured \
-             again",
-            points.display()
+            "{points}: {count} points are of another program ({made_by}; this is {}), whose kernels \
+             and times may differ; they are measured again",
+            plan.program_name()
         );
     }
-    if stored.broken_lines > 0 {
+    if dropped.of_other_input > 0 {
+        let count = dropped.of_other_input;
         log::warn!(
-            "{}: {} lines are no whole points; they are measured again",
-            points.display(),
-            stored.broken_lines
+            "{points}: {count} points are of another scene, setting or adapter; they are measured again"
         );
     }
-    Ok(stored)
+    if broken_lines > 0 {
+        log::warn!("{points}: {broken_lines} lines are no whole points; they are measured again");
+    }
 }
 
 /// Any adapter, a software one too: rounding does not depend on its speed.

@@ -1,27 +1,31 @@
 //! `sward run`.
 
-use std::io::{self, Write};
+mod printer;
+mod refuse;
+
+use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
+use printer::{Printer, print_json};
 
 use super::bundle::{Bundle, Contents, End, recording_name, text_of};
 use super::follow::Follower;
-use super::outputs::{FileTrace, ResultFile, finish_trace, make_folder};
+use super::outputs::{FileTrace, ResultFile, finish_trace, make_folder, refuse_one_file_for_two};
 use super::scene_file;
 use crate::app::device::EngineArguments;
 use crate::app::failure::exit_of_run;
 use crate::app::progress::Progress;
+use crate::app::values::{number, whole};
 use crate::app::{Failure, complain};
-use crate::gpu::knows_method;
 use crate::run::methods::{self, METHODS, NamedMethod};
 use crate::run::report::{Adapter, Report, Scenario};
 use crate::run::{
-    Device, EngineChoice, Exit, Outcome, Recorder, RunError, RunOptions, junit, run_watched, table,
+    Device, Exit, Outcome, Recorder, RunError, RunOptions, junit, run_watched, table,
 };
-use crate::scene::{LoadedScene, Solver, limits};
+use crate::scene::{LoadedScene, limits};
 
 /// Run scenarios without a window and check their expectations
 #[derive(Args, Debug)]
@@ -36,16 +40,23 @@ pub struct Arguments {
         long,
         value_name = "N",
         default_value_t = 60.0,
-        allow_negative_numbers = true
+        allow_negative_numbers = true,
+        value_parser = number
     )]
     hz: f64,
     /// Length of a sub-step instead of the scene's
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = number)]
     substep: Option<f64>,
     /// Seed of the grass instead of the scene's
-    #[arg(long, value_name = "N")]
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        value_parser = |text: &str| whole(text, 0, u32::MAX)
+    )]
     seed: Option<u32>,
-    /// Settings of the solver by name, instead of the scene's
+    /// Settings of the solver by name, instead of the scene's; one that has a sub-step of its own
+    /// goes without --substep
     #[arg(long, value_name = "NAME", value_parser = method_names())]
     method: Option<String>,
     /// Also run this engine beside, with the blades and sub-step of the scene, and tell how far the poses
@@ -89,14 +100,17 @@ pub(super) fn method_names() -> PossibleValuesParser {
 /// Runs all scenes and prints the report.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
     let options = options(arguments)?;
-    refuse_what_cannot_be_recorded(arguments)?;
+    refuse::what_cannot_be_recorded(arguments)?;
+    refuse::what_would_be_ignored(arguments, &options)?;
+    scene_file::check_folders(&arguments.assets)?;
     let names = scene_file::distinct_names(&arguments.scenes);
     let mut outputs = Outputs::open(arguments, &names)?;
     let device = arguments.engine.open()?;
-    refuse_unknown_to_gpu(&device, options.method)?;
+    refuse::unknown_to_gpu(&device, options.method)?;
     let adapter = device.gpu().map(Adapter::of);
     let mut report = Report::new(device.engine_name(), adapter, options.hz);
     let recordings = std::mem::take(&mut outputs.recordings);
+    let mut printer = Printer::new(out, arguments.json);
     for ((scene, name), recording) in arguments.scenes.iter().zip(&names).zip(recordings) {
         let mut batch = Batch {
             arguments,
@@ -112,19 +126,12 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
         if let Some(error) = &scenario.error {
             complain(error);
         }
+        printer.scenario(&scenario);
         report.scenarios.push(scenario);
     }
     outputs.finish(&report, arguments)?;
-    let printed = if arguments.json {
-        print_json(&report, out)
-    } else {
-        table::write_table(&report, out)
-    };
-    match printed {
-        // Whoever closed the pipe still gets the verdict as the exit code.
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
-        _ => Ok(report.exit()),
-    }
+    printer.finish(&report)?;
+    Ok(report.exit())
 }
 
 fn options(arguments: &Arguments) -> Result<RunOptions, Failure> {
@@ -148,39 +155,6 @@ fn options(arguments: &Arguments) -> Result<RunOptions, Failure> {
     })
 }
 
-/// A recording is verified with the cpu engine, whose bodies take other steps than the reference's.
-fn refuse_what_cannot_be_recorded(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.record.is_some() && arguments.engine.choice()? == EngineChoice::Reference {
-        let text = "--record with --engine reference: a recording is replayed and verified on the cpu \
-                    engine, which takes other sub-steps; record with --engine cpu or gpu";
-        return Err(Failure::Usage(text.into()));
-    }
-    Ok(())
-}
-
-fn refuse_unknown_to_gpu(
-    device: &Device,
-    method: Option<&'static NamedMethod>,
-) -> Result<(), Failure> {
-    let known = |method: &NamedMethod| {
-        let mut solver = Solver::default();
-        method.apply(&mut solver);
-        knows_method(&solver.method)
-    };
-    match method {
-        Some(method) if device.gpu().is_some() && !known(method) => {
-            let names = METHODS.iter().filter(|m| known(m)).map(|m| m.name);
-            let names: Vec<&str> = names.collect();
-            Err(Failure::Missing(format!(
-                "--method {}: the gpu engine does not have it; take --engine cpu, or one of {}",
-                method.name,
-                names.join(", ")
-            )))
-        }
-        _ => Ok(()),
-    }
-}
-
 /// Every file the run is to write, opened before it.
 struct Outputs {
     trace: Option<FileTrace>,
@@ -193,6 +167,30 @@ struct Outputs {
 
 impl Outputs {
     fn open(arguments: &Arguments, names: &[String]) -> Result<Self, Failure> {
+        refuse_one_file_for_two(
+            &[
+                ("--trace", arguments.trace.as_deref()),
+                ("--junit", arguments.junit.as_deref()),
+                ("--record", arguments.record.as_deref()),
+                (
+                    "--out",
+                    arguments
+                        .out
+                        .as_deref()
+                        .map(|f| f.join("report.json"))
+                        .as_deref(),
+                ),
+                (
+                    "--out",
+                    arguments
+                        .out
+                        .as_deref()
+                        .map(|f| f.join("report.txt"))
+                        .as_deref(),
+                ),
+            ],
+            &arguments.scenes,
+        )?;
         if let Some(folder) = &arguments.out {
             make_folder(folder)?;
         }
@@ -239,6 +237,13 @@ fn open_recordings(
             "--record {} is one file for {} scenes: give a folder",
             path.display(),
             names.len()
+        );
+        return Err(Failure::Usage(text));
+    }
+    if !is_file && path.extension().is_some() && !path.is_dir() {
+        let text = format!(
+            "--record {}: a recording's name ends in .recording; a new folder's name has no ending",
+            path.display()
         );
         return Err(Failure::Usage(text));
     }
@@ -384,9 +389,4 @@ fn judged(
     };
     let scenario = Scenario::broken(name.to_owned(), error.clone(), exit);
     (scenario, End::BrokenOff { ticks, error })
-}
-
-fn print_json(report: &Report, out: &mut impl Write) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut *out, report)?;
-    writeln!(out)
 }

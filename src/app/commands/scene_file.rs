@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::app::Failure;
 use crate::scene::assets::{AssetSource, Folders, InOrder};
 use crate::scene::builtin::{ASSETS, load_builtin};
 use crate::scene::{AssetError, LoadedScene, Problem, SceneError, load_scene};
@@ -12,9 +13,51 @@ use crate::scene::{AssetError, LoadedScene, Problem, SceneError, load_scene};
 /// # Errors
 /// The scene's own, with file, line and key.
 pub fn load(scene: &Path, assets: &[PathBuf]) -> Result<LoadedScene, SceneError> {
+    if scene
+        .extension()
+        .is_some_and(|ending| ending == "recording")
+        && scene.is_file()
+    {
+        return Err(no_scene(
+            scene,
+            "it is a recording, which `sward replay` runs",
+        ));
+    }
+    if scene.is_dir() {
+        return Err(no_scene(
+            scene,
+            "it is a folder; name the scenes in it, as in FOLDER/*.ron",
+        ));
+    }
     let by_name = scene.to_str().filter(|_| !scene.is_file());
     let built_in = by_name.and_then(load_builtin);
     built_in.unwrap_or_else(|| load_scene(scene, assets).map_err(named_nowhere))
+}
+
+/// Checks the folders of `--assets`: one that is not there would be looked in for nothing.
+///
+/// # Errors
+/// The first that is no folder.
+pub fn check_folders(assets: &[PathBuf]) -> Result<(), Failure> {
+    match assets.iter().find(|folder| !folder.is_dir()) {
+        Some(folder) => {
+            let what = if folder.exists() {
+                "a file"
+            } else {
+                "not there"
+            };
+            let folder = folder.display();
+            Err(Failure::Usage(format!(
+                "--assets {folder}: it is {what}; give a folder"
+            )))
+        }
+        None => Ok(()),
+    }
+}
+
+fn no_scene(path: &Path, what: &str) -> SceneError {
+    let problem = Problem::Unreadable(io::Error::other(what));
+    SceneError::whole(&path.display().to_string(), problem)
 }
 
 /// Says of a missing file that no scene of the program has that name either.

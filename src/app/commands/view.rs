@@ -5,7 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::outputs::make_folder;
 use super::render::size;
+use super::scene_file;
 use crate::app::device::EngineArguments;
 use crate::app::{Failure, window};
 use crate::run::Exit;
@@ -24,9 +26,10 @@ pub struct Arguments {
     /// Size of the window in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
     size: [u32; 2],
-    /// Folder for pictures saved with F12
-    #[arg(long, value_name = "DIR", default_value = ".")]
-    out: PathBuf,
+    /// Folder for pictures: those saved with F12, and the one written without a display; by default
+    /// the current folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
 impl Default for Arguments {
@@ -36,19 +39,23 @@ impl Default for Arguments {
             engine: EngineArguments::default(),
             assets: Vec::new(),
             size: [1280, 720],
-            out: PathBuf::from("."),
+            out: None,
         }
     }
 }
 
 /// Opens the window.
 pub fn run(arguments: Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
+    scene_file::check_folders(&arguments.assets)?;
+    if let Some(folder) = &arguments.out {
+        make_folder(folder)?;
+    }
     let options = window::Options {
         scene: arguments.scene,
         assets: arguments.assets,
         engine: arguments.engine.choice()?,
         size: arguments.size,
-        out: arguments.out,
+        out: arguments.out.unwrap_or_else(|| PathBuf::from(".")),
     };
     window::open(&options, out)
 }

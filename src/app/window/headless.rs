@@ -1,11 +1,11 @@
 //! `sward view` where there is no display.
 
-use std::fs;
 use std::io::Write;
 
 use super::scenes::SceneList;
 use super::{Options, complain};
 use crate::app::Failure;
+use crate::app::commands::outputs::{ResultFile, make_folder};
 use crate::gpu::{Gpu, GpuError};
 use crate::render::PictureTarget;
 use crate::run::{Engine, EngineChoice, Exit, Stage, StageError};
@@ -48,6 +48,10 @@ fn with_picture(
     options: &Options,
     out: &mut impl Write,
 ) -> Result<(), Failure> {
+    // A place that cannot be written to is told before time is spent on the run.
+    make_folder(&options.out)?;
+    let path = options.out.join(format!("sward-{}.png", loaded.name));
+    let file = ResultFile::create(&path)?;
     let target = PictureTarget::new(gpu, options.size)?;
     let mut stage = Stage::new(
         gpu,
@@ -59,13 +63,12 @@ fn with_picture(
     while stage.meadow().time_s() < loaded.scene.duration_s {
         stage.tick()?;
     }
+    stage.engine().check()?;
     let view = stage.camera(None)?;
     stage.draw(gpu, &view, &target.view, false)?;
     let picture = target.read(gpu)?;
-    let path = options.out.join(format!("sward-{}.png", loaded.name));
     let png = super::screenshot::encode(&picture, &stage, gpu)?;
-    fs::create_dir_all(&options.out).map_err(|e| Failure::file(&options.out, e))?;
-    fs::write(&path, png).map_err(|e| Failure::file(&path, e))?;
+    file.write(&png)?;
     print_line(loaded, stage.meadow(), out)?;
     writeln!(out, "picture: {}", path.display())?;
     Ok(())

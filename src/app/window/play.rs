@@ -2,7 +2,7 @@
 
 use crate::base::Vec3;
 use crate::field::TileState;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, GpuError};
 use crate::render::{PictureTarget, View};
 use crate::run::EngineChoice;
 use crate::run::stage::{Stage, StageError};
@@ -38,6 +38,8 @@ pub struct Play {
     arrows: [i8; 2],
     /// Milliseconds per pass of the last displayed frame, for engines without a device's clock.
     frame_ms: Vec<(&'static str, f64)>,
+    /// Whether the scene's plants are known to be wrong, and that was told.
+    told_wrong: bool,
 }
 
 /// Tiles by state.
@@ -70,6 +72,7 @@ impl Play {
             selected: None,
             arrows: [0; 2],
             frame_ms: Vec::new(),
+            told_wrong: false,
         })
     }
 
@@ -82,7 +85,18 @@ impl Play {
         self.stage.set_scene(gpu, &loaded, self.engine)?;
         self.selected = None;
         self.arrows = [0; 2];
+        self.told_wrong = false;
         Ok(())
+    }
+
+    /// What the device tells late of the sub-steps so far, once per scene.
+    pub fn news_of_device(&mut self) -> Option<GpuError> {
+        if self.told_wrong {
+            return None;
+        }
+        let error = self.stage.engine().check_late().err();
+        self.told_wrong = error.is_some();
+        error
     }
 
     /// Goes to another line of the menu.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::app::commands::scene_file;
 use crate::scene::builtin::{DEFAULT_SCENE, SCENES, load_builtin};
 use crate::scene::{LoadedScene, SceneError, load_scene, scene_files};
 
@@ -81,7 +82,7 @@ impl SceneList {
                 Some(loaded) => loaded,
                 None => load_scene(Path::new(name), &self.assets),
             },
-            Origin::File(path) => load_scene(path, &self.assets),
+            Origin::File(path) => scene_file::load(path, &self.assets),
         }
     }
 

@@ -212,6 +212,9 @@ impl Session {
         if let Err(error) = self.advance(frame_s) {
             self.toasts.error(error);
         }
+        if let Some(error) = self.play.news_of_device() {
+            self.toasts.error(error);
+        }
         self.move_camera(frame_s);
         if let Err(error) = self.draw_scene(size) {
             // A lost device ends the program; anything else may pass with the next frame.

@@ -31,7 +31,7 @@ impl WindowSurface {
     /// Makes the surface of a window and opens the device that can show pictures in it.
     ///
     /// # Errors
-    /// No adapter or device for this window; a surface the platform refuses.
+    /// No adapter or device for this window.
     pub fn open(display: OwnedDisplayHandle, window: Arc<Window>) -> Result<(Self, Gpu), GpuError> {
         if wgpu::Instance::enabled_backend_features().is_empty() {
             return Err(GpuError::NoAdapter {
@@ -40,8 +40,9 @@ impl WindowSurface {
         }
         let descriptor = wgpu::InstanceDescriptor::new_with_display_handle(Box::new(display));
         let instance = wgpu::Instance::new(descriptor.with_env());
-        let surface = create_surface(&instance, &window)?;
-        let gpu = Gpu::for_surface(&instance, &surface)?;
+        // Without a driver there is no backend that could make one.
+        let surface = create_surface(&instance, &window).map_err(no_adapter_for_window)?;
+        let gpu = Gpu::for_surface(&instance, &surface).map_err(no_adapter_for_window)?;
         let surface = Self {
             instance,
             surface,
@@ -128,4 +129,15 @@ fn create_surface(
             what: "the window's surface".into(),
             reason: error.to_string(),
         })
+}
+
+/// Tells what else can be done where no adapter draws in the window.
+fn no_adapter_for_window(error: GpuError) -> GpuError {
+    let (GpuError::NoAdapter { reason } | GpuError::Rejected { reason, .. }) = error else {
+        return error;
+    };
+    let text = "for the window; without one, `sward run SCENE` simulates on the cpu";
+    GpuError::NoAdapter {
+        reason: format!("{text}: {reason}"),
+    }
 }

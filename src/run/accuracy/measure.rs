@@ -150,6 +150,7 @@ impl Point {
         let relative = Relative::of(&self.cpu.frames_ms, default_ms);
         Row {
             key: String::new(),
+            program: String::new(),
             scene: loaded.name.clone(),
             method: self.method.name.to_owned(),
             family: self.method.family.to_owned(),

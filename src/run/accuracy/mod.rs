@@ -28,12 +28,13 @@ pub use plan::{
 };
 pub use plot::{PlotError, error_plot, summary_plot};
 pub use relative::Relative;
-pub use store::{Row, Store, Stored};
+pub use store::{Dropped, Row, Store, Stored};
 pub use table::write_markdown;
 
 use super::bench::Machine;
 use super::report::Adapter;
 use super::scenario::{Device, RunError};
+use super::spring_clamp::SpringClamp;
 use crate::field::blade_table::TableError;
 use crate::scene::Scene;
 use truth::Truth;
@@ -70,6 +71,8 @@ pub struct SceneReport {
     pub floor: Row,
     pub rows: Vec<Row>,
     pub left_out: Vec<LeftOut>,
+    /// What the stability clamp does in the methods that have literal springs.
+    pub clamps: Vec<(&'static str, SpringClamp)>,
 }
 
 impl SceneReport {
@@ -167,6 +170,7 @@ fn run_scene(
         floor: row(FLOOR).unwrap_or_default(),
         rows: rows.filter_map(|method| row(method.name)).collect(),
         left_out: planned.left_out.clone(),
+        clamps: planned.clamps(),
     })
 }
 
@@ -181,10 +185,16 @@ fn measure_missing(
     let truth = Truth::record(loaded, |share| progress(TRUTH_POINTS * share))?;
     let megabytes = truth.bytes() as f64 * 1e-6;
     log::info!("{}: {megabytes:.1} MB of reference poses", loaded.name);
+    let program = plan::program_name(context.program);
     let key = context.key(loaded, FLOOR);
     if store.get(&key).is_none() {
         let floor = measure::floor_row(loaded, &truth);
-        store.add(Row { key, ..floor })?;
+        let program = program.clone();
+        store.add(Row {
+            key,
+            program,
+            ..floor
+        })?;
     }
     let missing = planned.methods.iter().copied();
     let missing: Vec<_> = missing
@@ -198,7 +208,12 @@ fn measure_missing(
         })?;
         for row in rows {
             let key = context.key(loaded, &row.method);
-            store.add(Row { key, ..row })?;
+            let program = program.clone();
+            store.add(Row {
+                key,
+                program,
+                ..row
+            })?;
         }
         done += points;
     }

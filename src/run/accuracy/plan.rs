@@ -9,6 +9,7 @@ use crate::base::hash::Hash64;
 use crate::run::methods::{METHODS, NamedMethod, method};
 use crate::run::report::Adapter;
 use crate::run::scenario::Device;
+use crate::run::spring_clamp::SpringClamp;
 use crate::scene::{LoadedScene, Motion, Scene, Solver, to_ron};
 
 /// Methods that the quick report leaves out: inner points of curves whose ends it has.
@@ -34,6 +35,11 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Version and hash of the program, as rows have it.
+    pub fn program_name(&self) -> String {
+        program_name(self.program)
+    }
+
     /// Whether a row is a point of this plan by its names.
     pub fn asks_for(&self, row: &Row) -> bool {
         let scene = |planned: &&Planned| planned.loaded.name == row.scene;
@@ -79,6 +85,16 @@ impl Planned {
     pub(super) fn names(&self) -> impl Iterator<Item = &'static str> {
         let methods = self.methods.iter().map(|method| method.name);
         std::iter::once(FLOOR).chain(methods)
+    }
+
+    /// What the stability clamp does in its methods that have literal springs.
+    pub(super) fn clamps(&self) -> Vec<(&'static str, SpringClamp)> {
+        let clamp = |method: &&'static NamedMethod| {
+            let mut solver = self.loaded.scene.solver.clone();
+            method.apply(&mut solver);
+            Some((method.name, SpringClamp::of(&solver)?))
+        };
+        self.methods.iter().filter_map(clamp).collect()
     }
 
     /// A scene with the methods that can be compared on it.
@@ -170,6 +186,11 @@ impl Context<'_> {
         hash.bytes(format!("{name}\n{scene}\n{solver:?}\n{device:?}\n{assets:?}").as_bytes());
         format!("{:016x}", hash.value())
     }
+}
+
+/// Version and hash of a program in words.
+pub(super) fn program_name(hash: u64) -> String {
+    format!("{}+{hash:016x}", env!("CARGO_PKG_VERSION"))
 }
 
 /// A hash of the running program's own file: whatever changes a result or a time, kernels, shaders,

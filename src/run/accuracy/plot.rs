@@ -327,6 +327,7 @@ mod tests {
             },
             rows: rows.collect(),
             left_out: Vec::new(),
+            clamps: Vec::new(),
         }
     }
 

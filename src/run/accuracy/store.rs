@@ -9,14 +9,17 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::{FLOOR, Plan};
+use super::Plan;
 
 /// One method on one scene. Lengths are in metres.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+#[serde(default)]
 pub struct Row {
     /// Hash of the program, the scene, the solver's settings and the graphics device: another one is
     /// another point.
     pub key: String,
+    /// Version and hash of the program that measured it.
+    pub program: String,
     pub scene: String,
     pub method: String,
     pub family: String,
@@ -57,8 +60,9 @@ pub struct Row {
 }
 
 /// Columns in the order they are written, which are the keys of [`Row`].
-const COLUMNS: [&str; 27] = [
+const COLUMNS: [&str; 28] = [
     "key",
+    "program",
     "scene",
     "method",
     "family",
@@ -86,8 +90,10 @@ const COLUMNS: [&str; 27] = [
     "precision_rms_m",
     "method_rms_m",
 ];
-/// How many of them are texts; the others are numbers.
-const TEXTS: usize = 4;
+/// Those of them that are texts; the others are numbers.
+const TEXTS: [&str; 5] = ["key", "program", "scene", "method", "family"];
+/// Those without which a line tells nothing: every version of the file has them.
+const NEEDED: [&str; 3] = ["key", "scene", "method"];
 
 impl Row {
     /// The row as a line without its end.
@@ -102,15 +108,16 @@ impl Row {
         Ok(fields.join(","))
     }
 
-    /// Reads a line; `None` if it is not a whole row, as the last one of a report that was killed.
-    fn parse(line: &str) -> Option<Self> {
+    /// Reads a line under these column names; `None` if it is not a whole row, as the last one of a
+    /// report that was killed. Columns that a file of another version lacks are empty.
+    fn parse(line: &str, columns: &[&str]) -> Option<Self> {
         let fields: Vec<&str> = line.split(',').collect();
-        if fields.len() != COLUMNS.len() {
+        if fields.len() != columns.len() {
             return None;
         }
         let mut row = Map::new();
-        for (n, (&column, &text)) in COLUMNS.iter().zip(&fields).enumerate() {
-            let value = if n < TEXTS {
+        for (&column, &text) in columns.iter().zip(&fields) {
+            let value = if TEXTS.contains(&column) {
                 Value::from(text)
             } else if text.is_empty() {
                 Value::Null
@@ -126,7 +133,7 @@ impl Row {
 }
 
 /// What a file of rows holds, before it is opened for writing.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Stored {
     rows: Vec<Row>,
     /// Lines that are no rows, which are measured again.
@@ -138,7 +145,7 @@ impl Stored {
     ///
     /// # Errors
     ///
-    /// A file that cannot be read.
+    /// A file that cannot be read; one of something else (`InvalidData`).
     pub fn read(path: &Path) -> io::Result<Self> {
         let text = match fs::read_to_string(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
@@ -146,32 +153,61 @@ impl Stored {
         };
         // A line without an end may have lost digits of its last number.
         let (whole, cut) = text.split_at(text.rfind('\n').map_or(0, |at| at + 1));
-        let lines: Vec<&str> = whole.lines().filter(|line| *line != header()).collect();
-        let rows: Vec<Row> = lines.iter().filter_map(|line| Row::parse(line)).collect();
+        let mut lines = whole.lines();
+        let columns: Vec<&str> = lines
+            .next()
+            .map_or_else(Vec::new, |l| l.split(',').collect());
+        let is_of_points = NEEDED.iter().all(|needed| columns.contains(needed));
+        if !text.is_empty() && !is_of_points {
+            let text = "it has other columns than a report's points";
+            return Err(io::Error::new(io::ErrorKind::InvalidData, text));
+        }
+        let lines: Vec<&str> = lines.collect();
+        let rows = lines.iter().filter_map(|line| Row::parse(line, &columns));
+        let rows: Vec<Row> = rows.collect();
         Ok(Self {
             broken_lines: lines.len() - rows.len() + usize::from(!cut.is_empty()),
             rows,
         })
     }
 
-    /// Scenes with the methods that a plan leaves out: a report of that plan would lose them.
-    pub fn left_out_by(&self, plan: &Plan) -> BTreeMap<String, Vec<String>> {
-        let mut left_out: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    /// Scenes with the methods that a plan leaves out: a report of that plan would lose them. The noise
+    /// floor of a scene that is left out counts as one of its methods.
+    pub fn left_out_by(&self, plan: &Plan) -> BTreeMap<String, BTreeSet<String>> {
+        let mut left_out: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
         for row in self.rows.iter().filter(|row| !plan.asks_for(row)) {
             let methods = left_out.entry(row.scene.clone()).or_default();
-            if row.method != FLOOR && !methods.contains(&row.method) {
-                methods.push(row.method.clone());
-            }
+            methods.insert(row.method.clone());
         }
         left_out
     }
 
-    /// Keeps the rows of these keys, and tells how many others there were.
-    pub fn keep(&mut self, keys: &BTreeSet<String>) -> usize {
-        let before = self.rows.len();
-        self.rows.retain(|row| keys.contains(&row.key));
-        before - self.rows.len()
+    /// Keeps the rows of these keys, and tells what the others were.
+    pub fn keep(&mut self, keys: &BTreeSet<String>, program: &str) -> Dropped {
+        let (kept, others): (Vec<Row>, Vec<Row>) = std::mem::take(&mut self.rows)
+            .into_iter()
+            .partition(|row| keys.contains(&row.key));
+        self.rows = kept;
+        let mut dropped = Dropped::default();
+        for row in others {
+            if row.program == program {
+                dropped.of_other_input += 1;
+            } else {
+                *dropped.of_programs.entry(row.program).or_default() += 1;
+            }
+        }
+        dropped
     }
+}
+
+/// Rows that no longer hold.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Dropped {
+    /// Rows by the program that measured them, where that is another one; the empty name is of a
+    /// version that did not tell.
+    pub of_programs: BTreeMap<String, usize>,
+    /// Rows of this program, with another scene, setting or graphics device.
+    pub of_other_input: usize,
 }
 
 /// Rows by key, and the file they are kept in, if any.
@@ -242,6 +278,7 @@ mod tests {
             method: "sweep-1/8".into(),
             family: "sweeps".into(),
             substep_s: 1.0 / 120.0,
+            program: "0.1.0+1".into(),
             default_ms_per_s: 0.1 + 0.2,
             rms_m: Some(1e-17),
             side_flips: 3,
@@ -265,8 +302,8 @@ mod tests {
     #[test]
     fn a_line_gives_the_same_row_and_half_a_line_none() {
         let line = row("a").line().expect("a plain struct");
-        assert_eq!(Row::parse(&line), Some(row("a")));
-        assert_eq!(Row::parse(&line[..line.len() / 2]), None);
+        assert_eq!(Row::parse(&line, &COLUMNS), Some(row("a")));
+        assert_eq!(Row::parse(&line[..line.len() / 2], &COLUMNS), None);
     }
 
     /// A file of this test's own.
@@ -311,11 +348,29 @@ mod tests {
         }
         let mut stored = Stored::read(&path).expect("the file");
         let left_out = stored.left_out_by(&Plan::default());
-        assert_eq!(left_out["roll"], ["sweep-1/8"]);
-        assert_eq!(stored.keep(&BTreeSet::from(["b".to_owned()])), 1);
+        assert_eq!(left_out["roll"], BTreeSet::from(["sweep-1/8".to_owned()]));
+        let keys = BTreeSet::from(["b".to_owned()]);
+        let dropped = stored.clone().keep(&keys, "0.1.0+2");
+        assert_eq!(dropped.of_programs["0.1.0+1"], 1);
+        assert_eq!(stored.keep(&keys, "0.1.0+1").of_other_input, 1);
         let store = Store::create(&path, stored).expect("the file");
         assert_eq!((store.get("a"), store.get("b")), (None, Some(&row("b"))));
         assert!(Stored::read(&path.with_extension("none")).is_ok());
+        removed(&path);
+    }
+
+    #[test]
+    fn files_of_other_versions_are_read_and_files_of_other_things_are_not() {
+        let path = file("columns");
+        let older = "key,scene,method,ms_per_s\nc,roll,default,1.5\n";
+        fs::write(&path, older).expect("a writable file");
+        let stored = Stored::read(&path).expect("the file");
+        assert!(stored.left_out_by(&Plan::default())["roll"].contains("default"));
+        for other in ["x,y\n1,2\n", "no end"] {
+            fs::write(&path, other).expect("a writable file");
+            let refused = Stored::read(&path).expect_err("no points");
+            assert_eq!(refused.kind(), io::ErrorKind::InvalidData);
+        }
         removed(&path);
     }
 }

@@ -314,6 +314,7 @@ mod tests {
             floor: row("floor", floor_m, 1.0),
             rows: rows.into_iter().map(of_scene).collect(),
             left_out: Vec::new(),
+            clamps: Vec::new(),
         }
     }
 

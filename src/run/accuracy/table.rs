@@ -317,6 +317,9 @@ fn write_scene(scene: &SceneReport, plots: bool, out: &mut impl Write) -> io::Re
     for row in &scene.rows {
         write_row(scene, row, out)?;
     }
+    for (method, clamp) in &scene.clamps {
+        writeln!(out, "\nSprings of `{method}`: {}.", clamp.words())?;
+    }
     for out_of in &scene.left_out {
         writeln!(
             out,

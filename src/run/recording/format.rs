@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::assets::AssetSource;
 use crate::scene::{
-    Event, LoadedScene, SceneError, limits, parse_scene_with, parse_value, validate, value_to_ron,
+    Event, LoadedScene, Problem, SceneError, limits, parse_scene_with, parse_value, validate,
+    value_to_ron,
 };
 
 use super::super::methods::{self, METHODS};
@@ -48,7 +49,8 @@ struct Asset {
 /// What files of every format have in common.
 #[derive(Deserialize)]
 struct Head {
-    format: u32,
+    #[serde(default)]
+    format: Option<u32>,
 }
 
 pub(super) fn write(recording: &Recording) -> Result<String, ron::Error> {
@@ -97,6 +99,12 @@ pub(super) fn parse(
     let wrong = |key: &str, what: String| SceneError::at_key(file, text, key, what);
     // A file of another format would otherwise be told to have unknown keys.
     let Head { format } = parse_value(file, text)?;
+    let Some(format) = format else {
+        let what = "it has no `format` and is no recording; if it is a scene, `sward run` runs it, and \
+                    records it with --record";
+        let problem = Problem::Unreadable(std::io::Error::other(what));
+        return Err(SceneError::whole(file, problem));
+    };
     if format != FORMAT {
         let what = format!("is {format}; this sward reads recordings of format {FORMAT}");
         return Err(wrong("format", what));

@@ -3,7 +3,9 @@
 #![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
 #![cfg(feature = "app")]
 
+#[path = "../process/mod.rs"]
 mod process;
+mod told;
 
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
