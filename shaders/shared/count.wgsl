@@ -71,6 +71,11 @@ fn count_by_world_area(corners: array<vec3f, 3>, view: CountUniform) -> f32 {
     return min(view.per_px * area_px, view.most);
 }
 
+// Places of a triangle of this count: the plants of smaller indices are shown, more or less.
+fn places_of(count: f32, rounding: f32) -> u32 {
+    return u32(max(ceil(count + rounding) - 1.0, 0.0));
+}
+
 // What is added to a count before its fraction is cut off.
 fn count_rounding(triangle: u32) -> f32 {
     return unit(philox2x32(vec2u(triangle, COUNT_WORD), field.key, field.rounds).x);

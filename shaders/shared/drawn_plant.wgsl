@@ -40,8 +40,8 @@ struct PlantLook {
 @group(3) @binding(2) var<storage, read> active_nodes: array<vec4f>;
 @group(3) @binding(3) var base_colour: texture_2d<f32>;
 @group(3) @binding(4) var base_sampler: sampler;
-// Plants bucket by bucket: tile, rank, kind and how it thrives, and halves: share of its size and
-// one over its width's factor. And how many each bucket has.
+// Plants bucket by bucket: tile; rank; how it thrives in 17 bits, then its kind in 3; and halves:
+// share of its size and one over its width's factor. And how many each bucket has.
 @group(3) @binding(5) var<storage, read> sorted: array<vec4u>;
 @group(3) @binding(6) var<storage, read> totals: array<u32, BUCKETS>;
 
@@ -72,7 +72,7 @@ fn drawn_plant(vertex: u32, instance: u32) -> DrawnPlant {
     let rank = entry.y;
     // First one blade of every plant, then their companions.
     let place = rank % field.plants_per_tile;
-    let choice = KindChoice(entry.z >> 20u, entry.z & 0xfffffu);
+    let choice = KindChoice((entry.z >> 17u) & 7u, entry.z & 0x1ffffu);
     let plant = plant_of(tile.tile, seed_at(tile.tile, place), choice);
     let sizes = unpack2x16unorm(entry.w);
     return DrawnPlant(

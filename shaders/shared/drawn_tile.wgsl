@@ -4,9 +4,9 @@
 struct DrawnTile {
     tile: TileRecord,
     anchor_from_eye: vec3f,
-    share: f32, // of a triangle's sequence that is drawn, where the distance decides
+    bound: f32, // of every triangle's count; the count itself where the distance decides
     detail: u32, // 0 finest
-    ranks: u32, // places of the tile's sequence that are looked at
-    boost: f32, // factor of the counts by area: imprints stay readable
+    most_places: u32, // of the tile's plants in the list of places
+    morph: f32, // how far its plants are on their way to the next coarser detail, 0 to 1
     spare: u32,
 }

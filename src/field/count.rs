@@ -6,6 +6,8 @@
 //!
 //! Deviation of eq. 2: the vector runs from the observer, so the cosine is that of −n̂ and v, and
 //! negative ones count as 0.
+//!
+//! Eq. 15: triangles may be given the counts of 32 bins instead of their own, see [`Bins`].
 
 use crate::base::Vec3;
 use crate::base::philox::{philox2x32, unit};
@@ -72,6 +74,51 @@ pub fn rounding(seeds: &Seeds, triangle: u32) -> f32 {
 pub fn shown(count: f32, rounding: f32, index: u32) -> f32 {
     let inside = count + rounding - (index as f32 + 1.0);
     (inside / (0.2 * count).max(1.0)).clamp(0.0, 1.0)
+}
+
+/// Places of a triangle of this count: its plants are those of smaller indices, of which
+/// [`shown`] tells how much. Never more than ⌈count⌉.
+pub fn places(count: f32, rounding: f32) -> u32 {
+    ((count + rounding).ceil() as u32).saturating_sub(1)
+}
+
+/// Bins of P15 section 3.2.
+pub const BINS: usize = 32;
+
+/// The counts that triangles are given where they are submitted by bins: P15 eq. 15 with
+/// n_min = 1.
+///
+/// Deviation: a triangle of fewer plants than one keeps its count, which its hash rounds to one
+/// plant or none; the first bin would give it one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bins {
+    pub centres: [f32; BINS],
+}
+
+impl Bins {
+    /// Bins up to the largest count of any triangle, at least 1.
+    pub fn up_to(most: f32) -> Self {
+        let most = f64::from(most.max(1.0));
+        let centre = |i: usize| libm::pow(most, i as f64 / (BINS - 1) as f64) as f32;
+        Self {
+            centres: std::array::from_fn(centre),
+        }
+    }
+
+    /// The bin whose centre is nearest to a count.
+    pub fn nearest(&self, count: f32) -> usize {
+        let is_past = |pair: &&[f32]| count > 0.5 * (pair[0] + pair[1]);
+        self.centres.windows(2).take_while(is_past).count()
+    }
+
+    /// The count that a triangle of a bin gets in place of its own.
+    pub fn binned(&self, count: f32) -> f32 {
+        if count < 1.0 {
+            count
+        } else {
+            self.centres[self.nearest(count)]
+        }
+    }
 }
 
 #[cfg(test)]
@@ -152,5 +199,41 @@ mod tests {
             );
         }
         assert_eq!(shown(10.0, 0.0, 2), 1.0);
+    }
+
+    #[test]
+    fn places_are_the_plants_that_show() {
+        for count in [0.0_f32, 0.2, 0.9, 1.0, 3.5, 64.0] {
+            for part in [0.0_f32, 0.1, 0.5, 0.999] {
+                let seen = (0..100).filter(|&i| shown(count, part, i) > 0.0).count();
+                assert_eq!(places(count, part), seen as u32, "{count} + {part}");
+                assert!(places(count, part) <= count.ceil() as u32);
+            }
+        }
+    }
+
+    /// Eq. 15 by its ends and its ratio; the nearest centre errs by half a step at most.
+    #[test]
+    fn bins_are_a_geometric_progression() {
+        let bins = Bins::up_to(128.0);
+        assert_eq!((bins.centres[0], bins.centres[BINS - 1]), (1.0, 128.0));
+        let ratio = libm::pow(128.0, 1.0 / 31.0) as f32;
+        for pair in bins.centres.windows(2) {
+            assert!((pair[1] / pair[0] / ratio - 1.0).abs() < 1e-6);
+        }
+        for step in 0..1271 {
+            let count = 1.0 + 0.1 * step as f32;
+            let nearest = bins.binned(count);
+            let off = |centre: &f32| (centre - count).abs();
+            let least = bins.centres.iter().map(off).fold(f32::INFINITY, f32::min);
+            assert_eq!(off(&nearest), least, "{count}");
+            // Half of a step of ratio q is (q − 1)/2 of the smaller centre.
+            assert!(
+                off(&nearest) <= 0.5 * (ratio - 1.0) * count + 1e-4,
+                "{count}"
+            );
+        }
+        assert_eq!(bins.binned(0.3), 0.3);
+        assert_eq!(Bins::up_to(0.5).centres, [1.0; BINS]);
     }
 }

@@ -178,6 +178,21 @@ impl<T: Pod> Buffer<T> {
         Ok(true)
     }
 
+    /// Makes room for `len` elements and half as many again, without keeping what was there. Returns
+    /// true if the buffer was replaced, so that bind groups must be made anew.
+    ///
+    /// # Errors
+    /// As for [`Buffer::new`].
+    pub fn reserve(&mut self, gpu: &Gpu, len: usize) -> Result<bool, GpuError> {
+        if len <= self.len {
+            return Ok(false);
+        }
+        *self = self
+            .of_len(gpu, len + len / 2)
+            .or_else(|_| self.of_len(gpu, len))?;
+        Ok(true)
+    }
+
     /// Reads the first `count` elements back. Waits for the device; for tests and headless runs.
     ///
     /// # Errors

@@ -7,6 +7,7 @@
 
 use crate::base::Vec3;
 use crate::field::TileId;
+use crate::field::count::Bins;
 use crate::gpu::field_data::TileRecord;
 use crate::gpu_struct;
 
@@ -26,6 +27,16 @@ pub enum Count {
     WorldArea { per_px: f32 },
 }
 
+/// How the plants of a triangle are submitted to the device: P15 section 3.2.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Submission {
+    /// Every triangle gets the count that its rule says; prefix sums over the triangles place it.
+    #[default]
+    Exact,
+    /// Every triangle gets the count of the nearest of 32 bins in geometric progression, eq. 15.
+    Bins,
+}
+
 /// How far and how finely blades are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BladeDetail {
@@ -37,6 +48,7 @@ pub struct BladeDetail {
     /// with it.
     pub tuft: u32,
     pub count: Count,
+    pub submission: Submission,
 }
 
 impl Default for BladeDetail {
@@ -46,6 +58,7 @@ impl Default for BladeDetail {
             reach_m: 110.0,
             tuft: 4,
             count: Count::Distance,
+            submission: Submission::Exact,
         }
     }
 }
@@ -58,6 +71,7 @@ impl BladeDetail {
             reach_m: 50.0,
             tuft: 3,
             count: Count::Distance,
+            submission: Submission::Exact,
         }
     }
 
@@ -93,19 +107,16 @@ gpu_struct! {
     pub(super) struct DrawnTile {
         tile: TileRecord,
         anchor_from_eye: [f32; 3],
-        share: f32,
+        bound: f32,
         pub(super) detail: u32,
-        pub(super) ranks: u32,
-        boost: f32,
+        pub(super) most_places: u32,
+        morph: f32,
         spare: u32,
     }
 }
 
 /// Distance of a band's end over that of its start.
 const BAND_RATIO: f64 = std::f64::consts::SQRT_2;
-/// Active tiles are drawn as finely as others at this share of their distance, so that imprints
-/// stay readable.
-const ACTIVE_NEARNESS: f64 = 0.4;
 /// Share of the lost cover that the remaining blades make up for by their width; the ground's
 /// own look supplies the rest.
 pub(super) const WIDEN_POWER: f32 = 0.75;
@@ -127,7 +138,7 @@ impl Size {
 #[derive(Clone, Copy, Debug)]
 struct Sight {
     tile: TileId,
-    /// From the eye; less for an active tile.
+    /// From the eye.
     distance_m: f64,
     band: u32,
 }
@@ -168,12 +179,9 @@ fn sight_of(
     let high = [high[0] + tall, heights[1] + tall, high[1] + tall];
     let eye = view.eye_in_world.to_f64();
     let nearest = [0, 1, 2].map(|a| eye[a].clamp(low[a], high[a]) - eye[a]);
-    let mut distance_m = Vec3::<f64>::of(nearest).length();
+    let distance_m = Vec3::<f64>::of(nearest).length();
     if distance_m >= f64::from(input.detail.reach_m) || !frustum.may_see(low, high) {
         return None;
-    }
-    if slab_of(input, tile).is_some() {
-        distance_m *= ACTIVE_NEARNESS;
     }
     Some(Sight {
         tile,
@@ -238,24 +246,23 @@ fn count_bound(input: &BladesInput<'_>, view: &View, picture: Size, sight: &Sigh
 fn drawn_tile(input: &BladesInput<'_>, view: &View, picture: Size, sight: &Sight) -> DrawnTile {
     let (field, grid) = (input.field, &input.field.grid);
     let mut record = TileRecord::resting(field, sight.tile);
-    let mut boost = 1.0;
     if let Some(slab) = slab_of(input, sight.tile) {
         record.slab = slab;
-        boost /= ACTIVE_NEARNESS * ACTIVE_NEARNESS;
     }
     let anchor = grid.anchor_of(sight.tile, &field.ground);
     let origin = Vec3::of(grid.anchor_in_world(&anchor, &field.ground));
-    // The count's fraction is rounded up or down by chance.
-    let most_ranks = most_on_triangle(input) as u32;
-    let bound = count_bound(input, view, picture, sight);
-    let ranks = ((bound + 1.0).ceil() as u32).min(most_ranks);
+    let bound = count_bound(input, view, picture, sight) as f32;
+    let most = match input.detail.submission {
+        Submission::Exact => bound,
+        Submission::Bins => Bins::up_to(most_on_triangle(input) as f32).binned(bound),
+    };
     DrawnTile {
         tile: record,
         anchor_from_eye: view.from_eye(origin),
-        share: input.detail.share(sight.distance_m) as f32,
+        bound,
         detail: detail_of(sight.band),
-        ranks: ranks * grid.triangles_per_tile(),
-        boost: boost as f32,
+        most_places: most.ceil() as u32 * grid.triangles_per_tile(),
+        morph: 0.0,
         spare: 0,
     }
 }

@@ -21,6 +21,8 @@ mod picture;
 mod pipeline;
 mod plant_form;
 mod plants;
+mod row_sums;
+mod seed_triangles;
 mod shadow;
 mod sky;
 mod sort_plants;
@@ -31,7 +33,7 @@ mod twigs;
 mod view_group;
 
 pub use active_nodes::ActiveNodes;
-pub use blade_tiles::{BladeDetail, Count};
+pub use blade_tiles::{BladeDetail, Count, Submission};
 pub use bodies::BodyInstance;
 pub use camera::{Frustum, View};
 pub use error::RenderError;
@@ -45,19 +47,22 @@ pub use plants::{BladeCounts, BladesInput, DrawnPlants};
 pub use sky::{Daylight, Sun};
 pub use tonemap::Exposure;
 
-use crate::field::count::{COUNT_WORD, NEAR_M};
+use crate::field::count::{BINS, COUNT_WORD, NEAR_M};
 use crate::field::grid::ANCHOR_CELLS;
 use crate::field::kinds::MAX_TASTES;
 use crate::field::plant::MAX_SPECIES;
 use crate::gpu::GpuStruct;
 use crate::gpu::layout::StructLayout;
-use crate::gpu::passes::WORKGROUP;
+use crate::gpu::passes::{MOST_GROUPS, WORKGROUP};
 use crate::gpu::wgsl::WgslFile;
 use crate::wgsl_file;
 use blade_tiles::WIDEN_POWER;
 use blades::{TUFT_RADIUS_M, TUFT_TURNS};
 use ground_look::{LOOK_BARE, LOOK_GRASS, LOOK_GRAVEL, LOOK_LITTER, TASTE_ROWS};
 use plant_form::{BUCKET_VERTICES, BUCKETS, DETAILS, FORM_BLADE, FORM_COUNT};
+use seed_triangles::{
+    LIST_BIN_ENDS, LIST_BIN_TRIANGLES, LIST_GROUPS, LIST_JOBS, LIST_PLACES, NO_BIN,
+};
 use sort_plants::{COUNT_BY_DISTANCE, COUNT_BY_PROJECTED_AREA, LEAST_GROWN, NO_BUCKET};
 use terrain::{CHUNK_SAMPLES, LAND_RINGS_M};
 
@@ -88,19 +93,38 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("overlay.wgsl"),
     wgsl_file!("sky.wgsl"),
     wgsl_file!(
-        "sort_plants.wgsl",
-        BUCKET_VERTICES,
-        BUCKETS,
+        "seed_triangles.wgsl",
+        BINS,
         COUNT_BY_DISTANCE,
         COUNT_BY_PROJECTED_AREA,
+        LIST_BIN_ENDS,
+        LIST_BIN_TRIANGLES,
+        LIST_GROUPS,
+        LIST_JOBS,
+        LIST_PLACES,
+        MOST_GROUPS,
+        NO_BIN,
+        WORKGROUP
+    ),
+    wgsl_file!("shared/sorting.wgsl", FORM_COUNT),
+    wgsl_file!(
+        "sort_plants.wgsl",
+        BINS,
+        BUCKET_VERTICES,
+        BUCKETS,
         DETAILS,
         FORM_BLADE,
-        FORM_COUNT,
         LEAST_GROWN,
+        LIST_BIN_ENDS,
+        LIST_BIN_TRIANGLES,
+        LIST_GROUPS,
+        LIST_JOBS,
+        LIST_PLACES,
         NO_BUCKET,
         WIDEN_POWER,
         WORKGROUP
     ),
+    wgsl_file!("sum_rows.wgsl", WORKGROUP),
     wgsl_file!(
         "terrain.wgsl",
         CHUNK_SAMPLES,
@@ -128,7 +152,6 @@ pub fn layouts() -> Vec<StructLayout> {
         plants::PlantLook::layout(),
         sort_plants::CountUniform::layout(),
         sort_plants::DrawArgs::layout(),
-        sort_plants::Job::layout(),
         sort_plants::SortUniform::layout(),
         terrain::Ground::layout(),
         terrain::Chunk::layout(),

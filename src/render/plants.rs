@@ -114,7 +114,7 @@ impl BladeCounts {
     fn add(&mut self, drawn: &DrawnTile, segments: u32) {
         let form = &FORMS[FORM_BLADE as usize];
         let [_, steps] = form.steps(drawn.detail, segments);
-        let blades = u64::from(drawn.ranks);
+        let blades = u64::from(drawn.most_places);
         self.tiles += 1;
         self.blades += blades;
         self.triangles += blades * u64::from(form.triangles((form.vertices)(steps)));
@@ -257,6 +257,7 @@ impl PlantsLayer {
                 picture,
                 detail: input.detail,
                 most: most_on_triangle(input) as f32,
+                triangles_per_tile: input.field.grid.triangles_per_tile(),
                 forms: &forms,
                 segments,
                 tiles: &tiles,

@@ -6,19 +6,22 @@
 
 use wgpu::BufferUsages;
 
+use crate::field::count::{BINS, Bins};
 use crate::field::plant::MAX_SPECIES;
-use crate::gpu::passes::{Access, Groups, Kernel, MOST_GROUPS, Recording, WORKGROUP};
+use crate::gpu::passes::{Access, Groups, Kernel, Recording, WORKGROUP};
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::gpu_struct;
 
 use super::SHADERS;
-use super::blade_tiles::{BladeDetail, Count, DrawnTile, Size};
+use super::blade_tiles::{BladeDetail, Count, DrawnTile, Size, Submission};
 use super::blades::TUFT_RADIUS_M;
 use super::camera::View;
 use super::plant_form::{BUCKETS, DETAILS, FORM_COUNT, FORMS};
+use super::row_sums::{RowSums, Rows};
+use super::seed_triangles::{LIST_GROUPS, SeedTriangles};
 
 /// A candidate that is not seen.
-pub(super) const NO_BUCKET: u32 = 255;
+pub(super) const NO_BUCKET: u32 = 63;
 /// Rules of counting, as the shader knows them.
 pub(super) const COUNT_BY_DISTANCE: u32 = 0;
 pub(super) const COUNT_BY_PROJECTED_AREA: u32 = 1;
@@ -46,19 +49,14 @@ gpu_struct! {
         clip_reach: [f32; 2],
         reach_m: f32,
         tuft_m: f32,
-        jobs: u32,
-        groups_wide: u32,
-        spare: [u32; 2],
+        triangles: u32,
+        triangle_groups: u32,
+        triangle_groups_wide: u32,
+        by_bins: u32,
         count: CountUniform,
+        bins: [[f32; 4]; BINS / 4],
         forms: [[u32; 4]; MAX_SPECIES / 4],
         vertices: [[u32; DETAILS as usize]; FORM_COUNT as usize],
-    }
-}
-
-gpu_struct! {
-    pub(super) struct Job {
-        tile: u32,
-        first_rank: u32,
     }
 }
 
@@ -79,6 +77,7 @@ pub(super) struct SortInput<'a> {
     pub(super) detail: BladeDetail,
     /// Plants of a triangle and their companions.
     pub(super) most: f32,
+    pub(super) triangles_per_tile: u32,
     /// Form of each kind.
     pub(super) forms: &'a [u32],
     /// Segments of a plant.
@@ -89,59 +88,54 @@ pub(super) struct SortInput<'a> {
 /// The lists on the device.
 #[derive(Debug)]
 pub(super) struct PlantSort {
+    triangles: SeedTriangles,
+    sums: RowSums,
     list: Kernel,
-    sum: Kernel,
     sort: Kernel,
     uniform: Buffer<SortUniform>,
-    jobs: Buffer<Job>,
     candidates: Buffer<[u32; 4]>,
-    slots: Buffer<u32>,
     job_counts: Buffer<u32>,
     pub(super) tiles: Buffer<DrawnTile>,
     pub(super) totals: Buffer<u32>,
     pub(super) sorted: Buffer<[u32; 4]>,
     pub(super) draws: Buffer<DrawArgs>,
-    /// Jobs of this frame.
-    count: u32,
+    /// Whether the frame has tiles.
+    has_tiles: bool,
 }
 
 impl PlantSort {
     pub(super) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let (read, write) = (Access::Read, Access::Write);
+        let (uniform, read, write) = (Access::Uniform, Access::Read, Access::Write);
         let kernel = |name, bindings: &[(u32, Access)]| {
             Kernel::of_library(gpu, SHADERS, "sort_plants.wgsl", name, bindings, WORKGROUP)
         };
+        let listed = [
+            (0, uniform),
+            (1, read),
+            (2, read),
+            (3, read),
+            (4, read),
+            (5, write),
+            (6, write),
+        ];
+        let sorted = [
+            (0, uniform),
+            (4, read),
+            (5, write),
+            (6, write),
+            (7, read),
+            (8, write),
+            (9, write),
+        ];
         let storage = BufferUsages::STORAGE;
         let buckets = BUCKETS as usize;
         Ok(Self {
-            list: kernel(
-                "list_plants",
-                &[
-                    (0, Access::Uniform),
-                    (1, read),
-                    (2, read),
-                    (3, write),
-                    (4, write),
-                    (8, write),
-                ],
-            )?,
-            sum: kernel("sum_jobs", &[(0, Access::Uniform), (4, write), (5, write)])?,
-            sort: kernel(
-                "sort_plants",
-                &[
-                    (0, Access::Uniform),
-                    (3, write),
-                    (4, write),
-                    (5, write),
-                    (6, write),
-                    (7, write),
-                    (8, write),
-                ],
-            )?,
+            triangles: SeedTriangles::new(gpu)?,
+            sums: RowSums::new(gpu)?,
+            list: kernel("list_plants", &listed)?,
+            sort: kernel("sort_plants", &sorted)?,
             uniform: Buffer::new(gpu, "plant sorting", 1, BufferUsages::UNIFORM)?,
-            jobs: Buffer::new(gpu, "plant jobs", 1024, storage)?,
             candidates: Buffer::new(gpu, "plant candidates", 0, storage)?,
-            slots: Buffer::new(gpu, "buckets of plant candidates", 0, storage)?,
             job_counts: Buffer::new(gpu, "plants per job", 0, storage)?,
             tiles: Buffer::new(gpu, "drawn tiles", 1024, storage)?,
             totals: Buffer::new(gpu, "plants per bucket", buckets, storage)?,
@@ -152,124 +146,117 @@ impl PlantSort {
                 buckets,
                 storage | BufferUsages::INDIRECT,
             )?,
-            count: 0,
+            has_tiles: false,
         })
     }
 
     /// Nothing to sort in the next frame.
     pub(super) fn clear(&mut self) {
-        self.count = 0;
+        self.has_tiles = false;
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.count == 0
+        !self.has_tiles
     }
 
-    /// Lists a frame's jobs. Returns true if a buffer was replaced that the second stage binds.
+    /// Lists a frame's tiles. Returns true if a buffer was replaced that the second stage binds.
     ///
     /// # Errors
     /// More plants than the device can list.
     pub(super) fn write(&mut self, gpu: &Gpu, input: &SortInput<'_>) -> Result<bool, GpuError> {
-        let jobs: Vec<Job> = (0..)
-            .zip(input.tiles)
-            .flat_map(|(tile, drawn)| {
-                let firsts = (0..drawn.ranks).step_by(WORKGROUP as usize);
-                firsts.map(move |first_rank| Job { tile, first_rank })
-            })
-            .collect();
-        self.count = jobs.len() as u32;
-        self.jobs.write_or_grow(gpu, &jobs)?;
-        let places = jobs.len() * WORKGROUP as usize;
-        reserve(gpu, &mut self.candidates, places)?;
-        reserve(gpu, &mut self.slots, places)?;
-        reserve(gpu, &mut self.job_counts, jobs.len() * BUCKETS as usize)?;
+        self.has_tiles = !input.tiles.is_empty();
+        let triangles = input.tiles.len() as u32 * input.triangles_per_tile;
+        let submission = input.detail.submission;
+        self.triangles.write(gpu, submission, triangles)?;
+        let places: usize = (input.tiles.iter())
+            .map(|tile| tile.most_places as usize)
+            .sum();
+        // One job at least says that there is nothing to draw.
+        let jobs = places.div_ceil(WORKGROUP as usize).max(1);
+        let places = jobs * WORKGROUP as usize;
+        self.candidates.reserve(gpu, places)?;
+        self.job_counts.reserve(gpu, jobs * BUCKETS as usize)?;
         let grown =
-            self.tiles.write_or_grow(gpu, input.tiles)? | reserve(gpu, &mut self.sorted, places)?;
-        self.uniform
-            .write(gpu, 0, &[sort_uniform(input, self.count)])?;
+            self.tiles.write_or_grow(gpu, input.tiles)? | self.sorted.reserve(gpu, places)?;
+        let uniform = self.uniform(input, triangles);
+        self.uniform.write(gpu, 0, &[uniform])?;
         Ok(grown)
     }
 
-    /// Records the three kernels.
+    /// Records the kernels of the first stage.
     pub(super) fn record(&self, gpu: &Gpu, into: &mut Recording<'_>) {
         if self.is_empty() {
             return;
         }
-        let (uniform, counts) = (&self.uniform.raw, &self.job_counts.raw);
-        let (candidates, totals) = (&self.candidates.raw, &self.totals.raw);
-        let wide = self.count.min(MOST_GROUPS);
-        let groups = Groups::Direct([wide, self.count.div_ceil(wide), 1]);
+        let (uniform, triangles) = (&self.uniform.raw, &self.triangles);
+        triangles.record(gpu, into, &self.sums, uniform, &self.tiles);
+        let (list, counts) = (&triangles.list, &self.job_counts.raw);
+        let candidates = &self.candidates.raw;
+        let groups = Groups::Indirect(list, LIST_GROUPS);
         let listed = self.list.bind(
             gpu,
             &[
                 (0, uniform),
                 (1, &self.tiles.raw),
-                (2, &self.jobs.raw),
-                (3, candidates),
-                (4, counts),
-                (8, &self.slots.raw),
+                (2, &triangles.triangles.raw),
+                (3, &triangles.places().raw),
+                (4, &list.raw),
+                (5, candidates),
+                (6, counts),
             ],
         );
         self.list.record(into, &listed, groups);
-        let summed = (self.sum).bind(gpu, &[(0, uniform), (4, counts), (5, totals)]);
-        self.sum
-            .record(into, &summed, Groups::Direct([BUCKETS, 1, 1]));
+        let of_buckets = Rows {
+            length: list,
+            rows: &self.job_counts,
+            totals: &self.totals,
+            count: BUCKETS,
+        };
+        self.sums.record(gpu, into, of_buckets);
         let sorted = self.sort.bind(
             gpu,
             &[
                 (0, uniform),
-                (3, candidates),
-                (4, counts),
-                (5, totals),
-                (6, &self.sorted.raw),
-                (7, &self.draws.raw),
-                (8, &self.slots.raw),
+                (4, &list.raw),
+                (5, candidates),
+                (6, counts),
+                (7, &self.totals.raw),
+                (8, &self.sorted.raw),
+                (9, &self.draws.raw),
             ],
         );
         self.sort.record(into, &sorted, groups);
     }
-}
 
-/// Makes room without keeping what was there. Returns true if the buffer was replaced.
-fn reserve<T: bytemuck::Pod>(
-    gpu: &Gpu,
-    buffer: &mut Buffer<T>,
-    len: usize,
-) -> Result<bool, GpuError> {
-    if len <= buffer.len() {
-        return Ok(false);
-    }
-    *buffer = buffer
-        .of_len(gpu, len + len / 2)
-        .or_else(|_| buffer.of_len(gpu, len))?;
-    Ok(true)
-}
-
-fn sort_uniform(input: &SortInput<'_>, jobs: u32) -> SortUniform {
-    let clip_from_eye = input.view.clip_from_eye(input.picture.aspect());
-    let rows = clip_from_eye.transpose();
-    let length = |row: glam::Vec4| row.truncate().length();
-    let ahead = length(rows.w_axis);
-    let mut forms = [[0; 4]; MAX_SPECIES / 4];
-    for (kind, &form) in input.forms.iter().enumerate() {
-        forms[kind / 4][kind % 4] = form;
-    }
-    SortUniform {
-        clip_from_eye: clip_from_eye.to_cols_array_2d(),
-        clip_reach: [length(rows.x_axis) + ahead, length(rows.y_axis) + ahead],
-        reach_m: input.detail.reach_m,
-        tuft_m: TUFT_RADIUS_M,
-        jobs,
-        groups_wide: jobs.clamp(1, MOST_GROUPS),
-        spare: [0; 2],
-        count: count_uniform(input),
-        forms,
-        vertices: FORMS.map(|form| {
-            [0, 1, 2, 3].map(|detail| {
-                let [_, steps] = form.steps(detail, input.segments);
-                (form.vertices)(steps)
-            })
-        }),
+    fn uniform(&self, input: &SortInput<'_>, triangles: u32) -> SortUniform {
+        let clip_from_eye = input.view.clip_from_eye(input.picture.aspect());
+        let rows = clip_from_eye.transpose();
+        let length = |row: glam::Vec4| row.truncate().length();
+        let ahead = length(rows.w_axis);
+        let mut forms = [[0; 4]; MAX_SPECIES / 4];
+        for (kind, &form) in input.forms.iter().enumerate() {
+            forms[kind / 4][kind % 4] = form;
+        }
+        let bins = Bins::up_to(input.most);
+        SortUniform {
+            clip_from_eye: clip_from_eye.to_cols_array_2d(),
+            clip_reach: [length(rows.x_axis) + ahead, length(rows.y_axis) + ahead],
+            reach_m: input.detail.reach_m,
+            tuft_m: TUFT_RADIUS_M,
+            triangles,
+            triangle_groups: self.triangles.group_count,
+            triangle_groups_wide: self.triangles.groups_wide(),
+            by_bins: u32::from(input.detail.submission == Submission::Bins),
+            count: count_uniform(input),
+            bins: std::array::from_fn(|row| std::array::from_fn(|i| bins.centres[4 * row + i])),
+            forms,
+            vertices: FORMS.map(|form| {
+                [0, 1, 2, 3].map(|detail| {
+                    let [_, steps] = form.steps(detail, input.segments);
+                    (form.vertices)(steps)
+                })
+            }),
+        }
     }
 }
 

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use libtest_mimic::Failed;
 use sward::base::Vec3;
-use sward::field::count::{CountView, by_projected_area, by_world_area, rounding, shown};
+use sward::field::count::{Bins, CountView, by_projected_area, by_world_area, rounding, shown};
 use sward::field::{Field, TileId};
 use sward::gpu::{Gpu, PassTimer};
-use sward::render::{BladeDetail, BladesInput, Count, Exposure, FrameInput, Sun, View};
+use sward::render::{BladeDetail, BladesInput, Count, Exposure, FrameInput, Submission, Sun, View};
 use sward::scene::Form;
 
 use super::{SIZE, Stage, hold};
@@ -65,6 +65,10 @@ fn expected(field: &Field, view: &View, detail: BladeDetail) -> (BTreeMap<&'stat
                 let corners = corners(field, seed.cell, seed.half, view.eye_in_world);
                 by_world_area(corners, &count_view, per_px, most)
             }
+        };
+        let count = match detail.submission {
+            Submission::Exact => count,
+            Submission::Bins => Bins::up_to(most).binned(count),
         };
         let index = rank / grid.triangles_per_tile();
         if index == 0 {
@@ -131,35 +135,44 @@ pub fn plants_are_sorted_by_form(gpu: &Gpu) -> Result<(), Failed> {
     let mut stage = Stage::new(gpu, KINDS, 0)?;
     let eye = Vec3::of(EYE_M);
     let view = View::look_at(eye, Vec3::ZERO, 60.0);
-    for count in [
-        Count::Distance,
-        Count::ProjectedArea { per_px: 1.5 },
-        Count::WorldArea { per_px: 1.5 },
-    ] {
-        let detail = BladeDetail {
-            full_m: 40.0,
-            reach_m: 60.0,
-            tuft: 2,
-            count,
-        };
-        let (want, _) = expected(&stage.meadow.field, &view, detail);
-        let got = drawn(gpu, &mut stage, &view, detail)?;
-        println!("{count:?}: {got:?}");
-        hold(
-            want.len() == 3 && got.keys().eq(want.keys()),
-            format!("{count:?}: {got:?} for {want:?}"),
-        )?;
-        for (form, &plants) in &want {
-            let off = got[form].abs_diff(plants);
-            let few = if count == Count::Distance {
-                0
-            } else {
-                1 + plants / 1000
+    for submission in [Submission::Exact, Submission::Bins] {
+        for count in [
+            Count::Distance,
+            Count::ProjectedArea { per_px: 1.5 },
+            Count::WorldArea { per_px: 1.5 },
+        ] {
+            let detail = BladeDetail {
+                full_m: 40.0,
+                reach_m: 60.0,
+                tuft: 2,
+                count,
+                submission,
             };
-            hold(
-                off <= few && plants > 100,
-                format!("{count:?}, {form}: {} for {plants}", got[form]),
-            )?;
+            let (want, _) = expected(&stage.meadow.field, &view, detail);
+            let got = drawn(gpu, &mut stage, &view, detail)?;
+            println!("{submission:?}, {count:?}: {got:?}");
+            compare(&got, &want, count).map_err(|text| format!("{submission:?}, {text}"))?;
+        }
+    }
+    Ok(())
+}
+
+fn compare(
+    got: &BTreeMap<&'static str, u64>,
+    want: &BTreeMap<&'static str, u64>,
+    count: Count,
+) -> Result<(), String> {
+    if want.len() != 3 || !got.keys().eq(want.keys()) {
+        return Err(format!("{count:?}: {got:?} for {want:?}"));
+    }
+    for (form, &plants) in want {
+        let off = got[form].abs_diff(plants);
+        let few = match count {
+            Count::Distance => 0,
+            _ => 1 + plants / 1000,
+        };
+        if off > few || plants <= 100 {
+            return Err(format!("{count:?}, {form}: {} for {plants}", got[form]));
         }
     }
     Ok(())
@@ -182,6 +195,7 @@ pub fn density_follows_the_equations(gpu: &Gpu) -> Result<(), Failed> {
                     reach_m: 60.0,
                     tuft: 1,
                     count,
+                    ..BladeDetail::default()
                 };
                 let (_, mean) = expected(&stage.meadow.field, &view, detail);
                 let got = drawn(gpu, &mut stage, &view, detail)?;
