@@ -7,7 +7,7 @@ use crate::field::blade_shape::ShapeError;
 use crate::gpu::GpuError;
 use crate::render::RenderError;
 use crate::run::accuracy::{AccuracyError, PlotError};
-use crate::run::bench::TerrainBenchError;
+use crate::run::bench::{SubmissionError, TerrainBenchError};
 use crate::run::{Exit, RunError, StageError};
 use crate::scene::SceneError;
 
@@ -130,6 +130,16 @@ impl From<RenderError> for Failure {
 impl From<TerrainBenchError> for Failure {
     fn from(error: TerrainBenchError) -> Self {
         Self::Internal(error.to_string())
+    }
+}
+
+impl From<SubmissionError> for Failure {
+    fn from(error: SubmissionError) -> Self {
+        match error {
+            SubmissionError::Gpu(error) => error.into(),
+            SubmissionError::Render(error) => error.into(),
+            other => Self::Internal(other.to_string()),
+        }
     }
 }
 

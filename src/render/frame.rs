@@ -13,6 +13,7 @@ use super::ground_look::{GroundLook, GroundTexture};
 use super::ground_mesh::TerrainDetail;
 use super::overlay::{OverlayLayer, TileMark};
 use super::plants::{BladeCounts, BladesInput, DrawnPlants, PlantsLayer};
+use super::seed_triangles::SeededTriangles;
 use super::shadow::{ShadowFit, ShadowMap};
 use super::sky::{SkyLayer, Sun};
 use super::targets::{Targets, most_samples};
@@ -188,6 +189,37 @@ impl Renderer {
         gpu.queue.submit([encoder.finish()]);
         timer.collect(gpu);
         Ok(gpu.check()?)
+    }
+
+    /// Writes a frame's data without drawing it, for [`Renderer::sort_plants`].
+    ///
+    /// # Errors
+    /// Bad input, named; the device's own errors.
+    pub fn prepare(&mut self, gpu: &Gpu, input: &FrameInput<'_>) -> Result<(), RenderError> {
+        self.write(gpu, input)
+    }
+
+    /// Submits the first stage of drawing the prepared frame's plants alone, which finds and sorts
+    /// them: for benches.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn sort_plants(&self, gpu: &Gpu, timer: &mut PassTimer) -> Result<(), RenderError> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.plants.sort(gpu, &mut encoder, timer);
+        timer.finish_frame(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        timer.collect(gpu);
+        Ok(gpu.check()?)
+    }
+
+    /// What the last frame's first stage made of the seeding triangles, read back from the device:
+    /// for tests and benches, since it waits.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn seeded_triangles(&self, gpu: &Gpu) -> Result<SeededTriangles, RenderError> {
+        Ok(self.plants.read_triangles(gpu)?)
     }
 
     /// Writes what the layers need for this frame.

@@ -44,6 +44,7 @@ pub use meadow_view::{active_slabs, bodies_at, scene_view, tile_marks};
 pub use overlay::{TileMark, TileTone};
 pub use picture::{Animation, Picture, PictureTarget};
 pub use plants::{BladeCounts, BladesInput, DrawnPlants};
+pub use seed_triangles::SeededTriangles;
 pub use sky::{Daylight, Sun};
 pub use tonemap::Exposure;
 

@@ -16,6 +16,7 @@ use super::camera::View;
 use super::ground_look::GroundTexture;
 use super::pipeline::{Drawing, READ_STORAGE, SAMPLER, TEXTURE, UNIFORM, bind_group, group_layout};
 use super::plant_form::{BUCKETS, DETAILS, FORM_BLADE, FORMS, form_index};
+use super::seed_triangles::SeededTriangles;
 use super::sort_plants::{DrawArgs, PlantSort, SortInput};
 use super::view_group::ViewGroups;
 
@@ -318,6 +319,14 @@ impl PlantsLayer {
                 pass.draw_indirect(&self.sort.draws.raw, offset);
             }
         }
+    }
+
+    /// Reads back what the last frame made of its triangles. Waits for the device.
+    ///
+    /// # Errors
+    /// The device's.
+    pub(super) fn read_triangles(&self, gpu: &Gpu) -> Result<SeededTriangles, GpuError> {
+        self.sort.read_triangles(gpu)
     }
 
     /// Reads back what the last frame drew, by form. Waits for the device: for tests and benches.

@@ -39,6 +39,7 @@ pub(super) struct SeedTriangles {
     pub(super) list: Buffer<u32>,
     /// This frame's.
     submission: Submission,
+    triangle_count: u32,
     pub(super) group_count: u32,
 }
 
@@ -75,6 +76,7 @@ impl SeedTriangles {
                 storage | BufferUsages::INDIRECT,
             )?,
             submission: Submission::Exact,
+            triangle_count: 0,
             group_count: 0,
         })
     }
@@ -90,6 +92,7 @@ impl SeedTriangles {
         triangles: u32,
     ) -> Result<(), GpuError> {
         self.submission = submission;
+        self.triangle_count = triangles;
         self.group_count = triangles.div_ceil(WORKGROUP);
         self.groups.write(gpu, 0, &[self.group_count])?;
         let groups = self.group_count as usize;
@@ -165,4 +168,27 @@ impl SeedTriangles {
             .bind(gpu, &[(0, uniform), (4, totals), (6, &self.list.raw)]);
         self.size.record(into, &sized, Groups::Direct([1, 1, 1]));
     }
+
+    /// The counts that the last frame gave its triangles, and the places in its list. Waits for the
+    /// device.
+    ///
+    /// # Errors
+    /// The device's.
+    pub(super) fn read(&self, gpu: &Gpu) -> Result<SeededTriangles, GpuError> {
+        let triangles = self.triangles.read(gpu, self.triangle_count as usize)?;
+        let list = self.list.read(gpu, LIST_WORDS)?;
+        Ok(SeededTriangles {
+            counts: triangles.iter().map(|t| f32::from_bits(t[0])).collect(),
+            places: u64::from(list[LIST_PLACES as usize]),
+        })
+    }
+}
+
+/// What the first stage made of the seeding triangles in view.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SeededTriangles {
+    /// Plants and companions of every triangle of the tiles in view, with their fractions.
+    pub counts: Vec<f32>,
+    /// Places that were looked at for plants.
+    pub places: u64,
 }

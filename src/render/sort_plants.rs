@@ -18,7 +18,7 @@ use super::blades::TUFT_RADIUS_M;
 use super::camera::View;
 use super::plant_form::{BUCKETS, DETAILS, FORM_COUNT, FORMS};
 use super::row_sums::{RowSums, Rows};
-use super::seed_triangles::{LIST_GROUPS, SeedTriangles};
+use super::seed_triangles::{LIST_GROUPS, SeedTriangles, SeededTriangles};
 
 /// A candidate that is not seen.
 pub(super) const NO_BUCKET: u32 = 63;
@@ -226,6 +226,17 @@ impl PlantSort {
             ],
         );
         self.sort.record(into, &sorted, groups);
+    }
+
+    /// Reads back what the last frame made of its triangles. Waits for the device.
+    ///
+    /// # Errors
+    /// The device's.
+    pub(super) fn read_triangles(&self, gpu: &Gpu) -> Result<SeededTriangles, GpuError> {
+        if self.is_empty() {
+            return Ok(SeededTriangles::default());
+        }
+        self.triangles.read(gpu)
     }
 
     fn uniform(&self, input: &SortInput<'_>, triangles: u32) -> SortUniform {

@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use super::outputs::make_folder;
-use super::{bench_terrain, scene_file};
+use super::{bench_submission, bench_terrain, scene_file};
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
 use crate::app::progress::Progress;
@@ -42,6 +42,9 @@ enum Bench {
     /// Cost of the ground and of finding the plants in view, by the terrain's size; on the
     /// processor alone
     Terrain,
+    /// Plants in view listed by exact counts and by 32 bins: time and error of the density; needs a
+    /// graphics adapter
+    Submission,
 }
 
 /// Scene of a million blades.
@@ -60,6 +63,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     match arguments.what {
         Bench::Tiles => run_tiles(arguments, out),
         Bench::Terrain => bench_terrain::run(arguments, out),
+        Bench::Submission => bench_submission::run(arguments, out),
     }
 }
 

@@ -3,9 +3,11 @@
 pub mod flight;
 pub mod machine;
 mod rig;
+pub mod submission;
 pub mod terrain;
 pub mod tiles;
 
 pub use machine::Machine;
+pub use submission::{SubmissionBench, SubmissionError, bench_submission};
 pub use terrain::{TerrainBench, TerrainBenchError, bench_terrain};
 pub use tiles::{TilesBench, bench_tiles};

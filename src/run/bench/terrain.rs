@@ -143,7 +143,7 @@ pub fn bench_terrain(mut progress: impl FnMut(f64)) -> Result<TerrainBench, Terr
     })
 }
 
-fn hills(side_m: f32) -> Terrain {
+pub(super) fn hills(side_m: f32) -> Terrain {
     Terrain {
         ground: Ground::Rolling {
             size_m: [side_m; 2],
