@@ -6,6 +6,7 @@
 // per vertex; a blade thinner than a pixel is widened and made as much more transparent, so that
 // the cover of a far meadow does not flicker.
 #import "shared/drawn_plant.wgsl"
+#import "shared/planar_shadow.wgsl"
 #import "shared/plant_light.wgsl"
 
 struct BladePoint {
@@ -13,12 +14,23 @@ struct BladePoint {
     // At the middle of the covered samples: outside the blade colours would run on.
     @location(0) @interpolate(perspective, centroid) radiance: vec3f,
     @location(1) @interpolate(perspective, centroid) opacity: f32,
+    @location(2) across: f32, // from the midrib, -1 and 1 at the edges
 }
 
 // Width along the blade, relative to the root's: fullest at a fifth, then tapering to a point.
 fn taper(along: f32) -> f32 {
     return mix(0.7, 1.0, smoothstep(0.0, 0.2, along)) * sqrt(max(1.0 - along * along, 0.0))
         * (1.0 - 0.35 * along);
+}
+
+// Taper of a joint, on its way to that of the coarser detail's straight edges.
+fn taper_at(joint: DrawnJoint) -> f32 {
+    if joint.morph <= 0.0 {
+        return taper(joint.along);
+    }
+    let ends = joint.coarser;
+    let share = (joint.along - ends.x) / (ends.y - ends.x);
+    return mix(taper(joint.along), mix(taper(ends.x), taper(ends.y), share), joint.morph);
 }
 
 // A blade of a plant's tuft: 0 is the simulated one, the others stand by it.
@@ -53,8 +65,19 @@ fn blade_vertex(
     @builtin(vertex_index) vertex: u32,
     @builtin(instance_index) instance: u32,
 ) -> BladePoint {
+    return blade_point(drawn_plant(vertex, instance), vertex % BUCKET_VERTICES);
+}
+
+@vertex
+fn shadow_vertex(
+    @builtin(vertex_index) vertex: u32,
+    @builtin(instance_index) instance: u32,
+) -> ShadowPoint {
     let drawn = drawn_plant(vertex, instance);
-    let corner = vertex % BUCKET_VERTICES;
+    return planar_shadow(drawn, blade_point(drawn, vertex % BUCKET_VERTICES).clip);
+}
+
+fn blade_point(drawn: DrawnPlant, corner: u32) -> BladePoint {
     let plant = drawn.plant;
     let blade = companion(drawn.tile.tile, plant, drawn.companion);
     let root_from_eye = drawn.root_from_eye + blade.shift;
@@ -62,9 +85,9 @@ fn blade_vertex(
     let grown = drawn.grown;
 
     let step = corner / 2u;
-    let node = min(step * drawn.bucket.stride, field.segments);
-    let pose = drawn_node(drawn, node);
-    let along = f32(node) * field.segment_share;
+    let joint = drawn_joint(drawn, step);
+    let pose = joint.node;
+    let along = joint.along;
     let reached = turned_level(pose.place - plant.root, blade.turn);
     let centre = root_from_eye + reached * (grown * blade.size);
     let direction = turned_level(pose.direction, blade.turn);
@@ -91,7 +114,7 @@ fn blade_vertex(
     let side = select(select(-1.0, 1.0, (corner & 1u) == 1u), 0.0, step == drawn.bucket.steps);
     let seen_across = unit_or(seen, unit_or(cross(direction, sight), across));
     let spread = mix(across, seen_across, saturate(widened - 1.0));
-    let edge = spread * (side * half_m * widened * taper(along) * sqrt(grown));
+    let edge = spread * (side * half_m * widened * taper_at(joint) * sqrt(grown));
     let position = centre + edge;
 
     // A blade is bent across, along its midrib. Not where it is thin: samples beside its edges
@@ -109,14 +132,24 @@ fn blade_vertex(
     // Coverage has few steps; a lot per blade makes up for what lies between. Up to a third too
     // much cover is left, since a line of half its samples breaks up into dots.
     let lot = (shade_byte(plant, 0u) - 0.5) / f32(plant_look.samples);
-    return BladePoint(clip, through_air(radiance, position), 1.33 / widened + lot);
+    return BladePoint(clip, through_air(radiance, position), 1.33 / widened + lot, side);
+}
+
+// Detail of a blade's surface: a pale midrib and veins along it; gone before they alias. Deviation: a
+// formula in place of a texture.
+fn blade_tone(across: f32, width: f32) -> f32 {
+    let rib = 1.0 - smoothstep(0.05, 0.2, abs(across));
+    let veins = 0.5 + 0.5 * cos(across * 28.0);
+    let ribbed = 0.20 * rib * (1.0 - smoothstep(0.15, 0.45, width));
+    return 0.97 + ribbed + 0.10 * (veins - 0.5) * (1.0 - smoothstep(0.04, 0.11, width));
 }
 
 @fragment
 fn blade_fragment(in: BladePoint) -> @location(0) vec4f {
+    let tone = blade_tone(in.across, fwidth(in.across));
     // Without multisampling coverage is drawn by lot, pixel by pixel.
     if plant_look.samples == 1u && in.opacity < lattice(vec2i(in.clip.xy)) {
         discard;
     }
-    return vec4f(in.radiance, saturate(in.opacity));
+    return vec4f(in.radiance * tone, saturate(in.opacity));
 }

@@ -1,5 +1,6 @@
 // Flowers: a stem, and a head with an alpha mask that looks at the sky. Host: src/render/flowers.rs.
 #import "shared/drawn_plant.wgsl"
+#import "shared/planar_shadow.wgsl"
 #import "shared/plant_light.wgsl"
 
 struct FlowerPoint {
@@ -25,8 +26,19 @@ fn flower_vertex(
     @builtin(vertex_index) vertex: u32,
     @builtin(instance_index) instance: u32,
 ) -> FlowerPoint {
+    return flower_point(drawn_plant(vertex, instance), vertex % BUCKET_VERTICES);
+}
+
+@vertex
+fn shadow_vertex(
+    @builtin(vertex_index) vertex: u32,
+    @builtin(instance_index) instance: u32,
+) -> ShadowPoint {
     let drawn = drawn_plant(vertex, instance);
-    let corner = vertex % BUCKET_VERTICES;
+    return planar_shadow(drawn, flower_point(drawn, vertex % BUCKET_VERTICES).clip);
+}
+
+fn flower_point(drawn: DrawnPlant, corner: u32) -> FlowerPoint {
     if corner < 6u * drawn.bucket.steps {
         return on_stem(drawn, corner);
     }
@@ -37,9 +49,9 @@ fn on_stem(drawn: DrawnPlant, corner: u32) -> FlowerPoint {
     let is_upper = is_upper_corner(corner);
     let is_right = is_right_corner(corner);
     let step = corner / 6u + select(0u, 1u, is_upper);
-    let node = min(step * drawn.bucket.stride, field.segments);
-    let pose = drawn_node(drawn, node);
-    let along = f32(node) * field.segment_share;
+    let joint = drawn_joint(drawn, step);
+    let pose = joint.node;
+    let along = joint.along;
     let centre = drawn.root_from_eye + (pose.place - drawn.plant.root) * drawn.grown;
     let sight = centre / max(length(centre), 1e-6);
     let across = unit_or(cross(pose.direction, sight), vec3f(1.0, 0.0, 0.0));

@@ -1,6 +1,7 @@
 // Stones: octahedra with corners moved about, flat shaded (P15 section 4: diamond-shaped gravel).
 // Host: src/render/gravel.rs.
 #import "shared/drawn_plant.wgsl"
+#import "shared/planar_shadow.wgsl"
 #import "shared/plant_light.wgsl"
 
 struct StonePoint {
@@ -26,8 +27,19 @@ fn stone_vertex(
     @builtin(vertex_index) vertex: u32,
     @builtin(instance_index) instance: u32,
 ) -> StonePoint {
+    return stone_point(drawn_plant(vertex, instance), vertex % BUCKET_VERTICES);
+}
+
+@vertex
+fn shadow_vertex(
+    @builtin(vertex_index) vertex: u32,
+    @builtin(instance_index) instance: u32,
+) -> ShadowPoint {
     let drawn = drawn_plant(vertex, instance);
-    let corner = vertex % BUCKET_VERTICES;
+    return planar_shadow(drawn, stone_point(drawn, vertex % BUCKET_VERTICES).clip);
+}
+
+fn stone_point(drawn: DrawnPlant, corner: u32) -> StonePoint {
     let face = corner / 3u;
     let plant = drawn.plant;
     // A face has one corner on each axis.

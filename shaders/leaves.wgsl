@@ -1,6 +1,7 @@
 // Broad leaves: a lamina on both sides of the plant's centre line, cut out by an alpha mask. Host:
 // src/render/leaves.rs.
 #import "shared/drawn_plant.wgsl"
+#import "shared/planar_shadow.wgsl"
 #import "shared/plant_light.wgsl"
 
 struct LeafPoint {
@@ -20,15 +21,26 @@ fn leaf_vertex(
     @builtin(vertex_index) vertex: u32,
     @builtin(instance_index) instance: u32,
 ) -> LeafPoint {
+    return leaf_point(drawn_plant(vertex, instance), vertex % BUCKET_VERTICES);
+}
+
+@vertex
+fn shadow_vertex(
+    @builtin(vertex_index) vertex: u32,
+    @builtin(instance_index) instance: u32,
+) -> ShadowPoint {
     let drawn = drawn_plant(vertex, instance);
-    let corner = vertex % BUCKET_VERTICES;
+    return planar_shadow(drawn, leaf_point(drawn, vertex % BUCKET_VERTICES).clip);
+}
+
+fn leaf_point(drawn: DrawnPlant, corner: u32) -> LeafPoint {
     let is_upper = is_upper_corner(corner);
     let is_outer = is_right_corner(corner);
     let side = select(-1.0, 1.0, (corner / 6u) % 2u == 1u);
     let step = corner / 12u + select(0u, 1u, is_upper);
-    let node = min(step * drawn.bucket.stride, field.segments);
-    let pose = drawn_node(drawn, node);
-    let along = f32(node) * field.segment_share;
+    let joint = drawn_joint(drawn, step);
+    let pose = joint.node;
+    let along = joint.along;
 
     let plant = drawn.plant;
     let azimuth = vec3f(plant.azimuth.x, 0.0, plant.azimuth.y);

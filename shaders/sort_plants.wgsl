@@ -107,7 +107,7 @@ fn candidate_at(place: Place) -> Candidate {
     let triangle = ((seed.cell.y * field.cells.x + seed.cell.x) << 1u) | (rank & 1u);
     let count = bitcast<f32>(triangles[place.triangle].x);
     let shown = shown_share(count, count_rounding(triangle), place.index);
-    if shown < LEAST_GROWN {
+    if shown < LEAST_GROWN && sorting.count.is_plain == 0u {
         return none;
     }
     let choice = choice_of(drawn.tile, seed);
@@ -121,7 +121,10 @@ fn candidate_at(place: Place) -> Candidate {
     let plant = plant_of(drawn.tile, seed, choice);
     let root = drawn.anchor_from_eye + plant.root;
     // Plants at the end of sight are small.
-    let grown = shown * (1.0 - smoothstep(0.75, 1.0, length(root) / sorting.reach_m));
+    var grown = shown * (1.0 - smoothstep(0.75, 1.0, length(root) / sorting.reach_m));
+    if sorting.count.is_plain == 1u && grown > 0.0 {
+        grown = 1.0;
+    }
     if grown < LEAST_GROWN || !is_seen(root, plant.height_m) {
         return none;
     }

@@ -1,6 +1,7 @@
 // Twigs: round sticks along the plants' centre lines, each with a side branch. Host:
 // src/render/twigs.rs.
 #import "shared/drawn_plant.wgsl"
+#import "shared/planar_shadow.wgsl"
 #import "shared/plant_light.wgsl"
 
 struct TwigPoint {
@@ -26,8 +27,19 @@ fn twig_vertex(
     @builtin(vertex_index) vertex: u32,
     @builtin(instance_index) instance: u32,
 ) -> TwigPoint {
+    return twig_point(drawn_plant(vertex, instance), vertex % BUCKET_VERTICES);
+}
+
+@vertex
+fn shadow_vertex(
+    @builtin(vertex_index) vertex: u32,
+    @builtin(instance_index) instance: u32,
+) -> ShadowPoint {
     let drawn = drawn_plant(vertex, instance);
-    let corner = vertex % BUCKET_VERTICES;
+    return planar_shadow(drawn, twig_point(drawn, vertex % BUCKET_VERTICES).clip);
+}
+
+fn twig_point(drawn: DrawnPlant, corner: u32) -> TwigPoint {
     let is_upper = is_upper_corner(corner);
     let is_right = is_right_corner(corner);
     let side = (corner / 6u) % SIDES + select(0u, 1u, is_right);
@@ -64,14 +76,15 @@ fn over_ground(drawn: DrawnPlant, place: vec3f, radius_m: f32) -> vec3f {
 }
 
 fn on_stick(drawn: DrawnPlant, step: u32) -> StickPoint {
-    let node = min(step * drawn.bucket.stride, field.segments);
-    let pose = drawn_node(drawn, node);
-    let along = f32(node) * field.segment_share;
+    let joint = drawn_joint(drawn, step);
+    let pose = joint.node;
+    let along = joint.along;
     let radius_m = 0.5 * drawn.plant.width_m * drawn.widen * drawn.grown * (1.0 - 0.65 * along);
     let place = over_ground(drawn, pose.place, radius_m);
     // Grown wood has knees: every node lies a little off the line.
-    let word = drawn.plant.shade >> (node & 15u);
-    let off = (vec2f(f32(word & 15u), f32((word >> 4u) & 15u)) / 15.0 - 0.5) * (2.4 * radius_m);
+    let word = drawn.plant.shade >> (step * drawn.bucket.stride & 15u);
+    let off = (vec2f(f32(word & 15u), f32((word >> 4u) & 15u)) / 15.0 - 0.5) 
+        * (2.4 * radius_m * (1.0 - joint.morph));
     let centre = drawn.root_from_eye
         + (place + vec3f(off.x, 0.0, off.y) - drawn.plant.root) * drawn.grown;
     return StickPoint(centre, pose.direction, radius_m, along);

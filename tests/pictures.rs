@@ -27,10 +27,8 @@ const CHECKS: &[(&str, Check)] = &[
     ),
     ("blades_hide_the_ground", blades_hide_the_ground),
     ("a_body_hides_and_shades", a_body_hides_and_shades),
-    (
-        "plants_from_seeds_and_from_nodes_look_alike",
-        plants_from_seeds_and_from_nodes_look_alike,
-    ),
+    ("waking_changes_no_pixel", waking_changes_no_pixel),
+    ("plants_cast_shadows", plants_cast_shadows),
     ("pressed_grass_shows", pressed_grass_shows),
     (
         "a_coarser_ground_looks_like_the_full_one",
@@ -91,7 +89,7 @@ impl Stage {
         let active = &self.nodes.tiles[..];
         let input = FrameInput {
             view: &shown.view,
-            sun: Sun::default(),
+            sun: shown.sun,
             exposure: Exposure::default(),
             bodies: if shown.bodies { &bodies } else { &[] },
             blades: shown.blades.then_some(BladesInput {
@@ -100,10 +98,10 @@ impl Stage {
                 active: if shown.active { active } else { &[] },
                 active_nodes: &self.nodes.nodes,
                 detail: BladeDetail {
-                    // So far that everything in these pictures is drawn in full.
-                    full_m: 12.0,
+                    full_m: shown.full_m,
                     reach_m: 40.0,
                     tuft: 1,
+                    shadows: shown.shadows,
                     ..BladeDetail::default()
                 },
             }),
@@ -125,6 +123,9 @@ struct Shown {
     blades: bool,
     /// Take the plants of active tiles from their nodes.
     active: bool,
+    sun: Sun,
+    full_m: f32,
+    shadows: bool,
 }
 
 const ALL: Shown = Shown {
@@ -144,6 +145,13 @@ const ALL: Shown = Shown {
     bodies: true,
     blades: true,
     active: true,
+    sun: Sun {
+        elevation_deg: 34.0,
+        azimuth_deg: 215.0,
+    },
+    // So far that everything in these pictures is drawn in full.
+    full_m: 12.0,
+    shadows: true,
 };
 
 const BALL: &str = "(bodies: [(name: \"ball\", shape: Ball(radius_m: 0.4), \
@@ -270,39 +278,86 @@ fn a_body_hides_and_shades(gpu: &Gpu) -> Result<(), Failed> {
     )
 }
 
-/// The vertex shader's plants against those of the processor, through the whole picture: the nodes
-/// of an untouched tile are its wind pose.
-fn plants_from_seeds_and_from_nodes_look_alike(gpu: &Gpu) -> Result<(), Failed> {
+/// A tile that wakes draws its plants from its nodes instead of their seeds. Where nothing pushes them
+/// that changes no pixel, near by and where plants are left out and simpler.
+fn waking_changes_no_pixel(gpu: &Gpu) -> Result<(), Failed> {
     // A ball 1 cm below the longest blade's length wakes the tiles under it; no blade stands so
     // straight that it touches.
-    let scene = "(grass: (species: [(height_m: (0.3, 0.6))]), bodies: [(name: \"ball\", \
-        shape: Ball(radius_m: 0.1), position_m: (0.0, 0.69, 0.0), motion: Fixed)])";
+    let scene = "(grass: (species: [(height_m: (0.3, 0.6)), (form: Leaf, height_m: (0.1, 0.2)), \
+        (form: Flower(head_m: 0.05, petal_rgb: (0.8, 0.7, 0.1), centre_rgb: (0.3, 0.2, 0.1)))]), \
+        bodies: [(name: \"ball\", shape: Ball(radius_m: 0.1), position_m: (0.0, 0.69, 0.0), motion: Fixed)])";
     let mut stage = Stage::new(gpu, scene, 2)?;
     hold(!stage.nodes.tiles.is_empty(), "no tile is awake")?;
-    let nodes = stage.shoot(gpu, ALL)?;
-    // What a wrong pose would change.
-    stage.nodes.nodes.write(
-        gpu,
-        0,
-        &vec![[0.0, -9.0, 0.0, 0.0]; stage.nodes.nodes.len()],
-    )?;
-    let spoiled = stage.shoot(gpu, ALL)?;
-    let seeds = stage.shoot(
-        gpu,
-        Shown {
-            active: false,
+    let distances = [12.0, 2.0, 0.7];
+    let shot = |stage: &mut Stage, full_m: f32, active: bool| {
+        let shown = Shown {
+            full_m,
+            active,
             ..ALL
-        },
-    )?;
-    // Nodes agree to about 1e-6 m, a thousandth of a pixel: only a sample at the very edge of a
-    // blade may flip. One flip in 4,000 bytes, by a quarter of a contrast of 50 steps, is a root
-    // mean square of 0.2.
-    let alike = difference(&nodes, &seeds, WHOLE);
-    let apart = difference(&spoiled, &seeds, WHOLE);
+        };
+        stage.shoot(gpu, shown)
+    };
+    let mut awake = Vec::new();
+    for full_m in distances {
+        awake.push(shot(&mut stage, full_m, true)?);
+    }
+    // What a wrong pose would change.
+    let lost = vec![[0.0, -9.0, 0.0, 0.0]; stage.nodes.nodes.len()];
+    stage.nodes.nodes.write(gpu, 0, &lost)?;
+    for (full_m, awake) in distances.into_iter().zip(&awake) {
+        let asleep = shot(&mut stage, full_m, false)?;
+        let changed = (awake
+            .rgba8
+            .chunks_exact(4)
+            .zip(asleep.rgba8.chunks_exact(4)))
+        .filter(|(a, b)| a != b)
+        .count();
+        let spoiled = difference(&shot(&mut stage, full_m, true)?, &asleep, WHOLE);
+        hold(
+            changed == 0 && spoiled > 2.0,
+            format!("in full up to {full_m} m {changed} pixels change, {spoiled} by lost nodes"),
+        )?;
+    }
+    Ok(())
+}
+
+/// Shadows of plants darken ground and what lies behind them, lighten nothing, fall away from the sun
+/// and end where it is too low.
+fn plants_cast_shadows(gpu: &Gpu) -> Result<(), Failed> {
+    let scene = "(terrain: (ground: Flat(size_m: (6, 6))), grass: (density_per_m2: 3, \
+        species: [(height_m: (0.3, 0.4), width_m: (0.02, 0.03), stiffness: (4000, 5000), \
+        lean_deg: (2, 3))]))";
+    let mut stage = Stage::new(gpu, scene, 0)?;
+    let mut darker = |sun: Sun| -> Result<(f64, f64), Failed> {
+        let lit = |shadows: bool| Shown {
+            sun,
+            shadows,
+            ..ALL
+        };
+        let with = stage.shoot(gpu, lit(true))?;
+        let without = stage.shoot(gpu, lit(false))?;
+        let changes = with.rgba8.iter().zip(&without.rgba8);
+        let changes = changes.map(|(&a, &b)| f64::from(b) - f64::from(a));
+        let least = changes.clone().fold(0.0, f64::min);
+        Ok((changes.sum::<f64>() / with.rgba8.len() as f64, least))
+    };
+    let [high, slant, low] = [80.0, 34.0, 2.0].map(|elevation_deg| {
+        darker(Sun {
+            elevation_deg,
+            ..ALL.sun
+        })
+    });
+    let ((high, high_least), (slant, slant_least), (low, low_least)) = (high?, slant?, low?);
+    println!(
+        "darker by {high:.3} steps with the sun at 80 degrees, {slant:.3} at 34, {low:.3} at 2"
+    );
+    // A high sun's shadows are short.
     hold(
-        alike < 0.2 && apart > 5.0,
-        format!("alike {alike}, with spoiled nodes {apart}"),
-    )
+        low == 0.0 && high > 0.02 && slant > 2.0 * high,
+        format!("{high} {slant} {low}"),
+    )?;
+    let least = high_least.min(slant_least).min(low_least);
+    hold(least >= -1.0, format!("a shadow lightens by {least}"))
 }
 
 fn pressed_grass_shows(gpu: &Gpu) -> Result<(), Failed> {
@@ -340,6 +395,7 @@ fn a_coarser_ground_looks_like_the_full_one(gpu: &Gpu) -> Result<(), Failed> {
         bodies: false,
         blades: false,
         active: false,
+        ..ALL
     };
     let mut shoot = |error_px: f32| -> Result<_, Failed> {
         stage.renderer.terrain_detail = TerrainDetail {

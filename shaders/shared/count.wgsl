@@ -13,7 +13,8 @@ struct CountUniform {
     rule: u32,
     // Ceiling: the plants of a triangle and their companions.
     most: f32,
-    spare_a: f32,
+    // 1 if plants and segments come and go at once.
+    is_plain: u32,
     spare_b: vec2f,
 }
 

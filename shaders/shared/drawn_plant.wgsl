@@ -11,7 +11,8 @@
 struct Bucket {
     stride: u32, // nodes per drawn segment
     steps: u32, // drawn segments
-    spare: vec2u,
+    coarser: u32, // nodes per drawn segment at the next coarser detail
+    spare: u32,
 }
 
 // What only one form has, by kind.
@@ -110,6 +111,10 @@ struct DrawnNode {
     pressed: f32,
 }
 
+// A plant whose node is nearer to where the wind alone would have it than this share of its height is
+// drawn from its seed, so that waking and falling asleep change no pixel.
+const UNMOVED = 2e-5;
+
 // A node of the centre line, in the anchor's coordinates.
 fn drawn_node(drawn: DrawnPlant, node: u32) -> DrawnNode {
     let tile = drawn.tile.tile;
@@ -123,7 +128,43 @@ fn drawn_node(drawn: DrawnPlant, node: u32) -> DrawnNode {
     let along = active_nodes[root + upper].xyz - active_nodes[root + upper - 1u].xyz;
     let here = active_nodes[root + node].xyz;
     let moved = distance(here, free.place) / max(drawn.plant.height_m, 1e-6);
+    if moved < UNMOVED {
+        return DrawnNode(free.place, free.direction, 0.0);
+    }
     return DrawnNode(here, unit_or(along, UP), smoothstep(0.04, 0.35, moved));
+}
+
+// A joint of the drawn centre line.
+struct DrawnJoint {
+    node: DrawnNode,
+    along: f32, // share of the way from root to tip
+    // The joints of the next coarser detail around it, as shares of the way, and how far it has come
+    // from its own place to theirs.
+    coarser: vec2f,
+    morph: f32,
+}
+
+// Joint `step`. On the way to the next coarser detail those that it lacks move to its straight segments,
+// so that nothing changes when it comes.
+fn drawn_joint(drawn: DrawnPlant, step: u32) -> DrawnJoint {
+    let node = min(step * drawn.bucket.stride, field.segments);
+    let own = drawn_node(drawn, node);
+    let along = f32(node) * field.segment_share;
+    let coarser = drawn.bucket.coarser;
+    let low = node - node % coarser;
+    if drawn.tile.morph <= 0.0 || low == node || node == field.segments {
+        return DrawnJoint(own, along, vec2f(along), 0.0);
+    }
+    let high = min(low + coarser, field.segments);
+    let below = drawn_node(drawn, low);
+    let above = drawn_node(drawn, high);
+    let share = f32(node - low) / f32(high - low);
+    let morph = drawn.tile.morph;
+    let place = mix(own.place, mix(below.place, above.place, share), morph);
+    let direction = mix(own.direction, mix(below.direction, above.direction, share), morph);
+    let pressed = mix(own.pressed, mix(below.pressed, above.pressed, share), morph);
+    let around = vec2f(f32(low), f32(high)) * field.segment_share;
+    return DrawnJoint(DrawnNode(place, unit_or(direction, UP), pressed), along, around, morph);
 }
 
 // Place on the base map of the plant's root, in metres from its corner.

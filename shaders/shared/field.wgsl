@@ -15,7 +15,11 @@ struct SpeciesUniform {
     dwindle: f32,
     // 1 if bodies push it aside.
     bends: u32,
-    spare: u32,
+    spare_a: u32,
+    // Azimuth of the light and how far from it plants lean, in turns; the latter below 0 where they
+    // lean to all sides alike.
+    towards: vec2f,
+    spare_b: vec2u,
 }
 
 // A liking for a colour of the ground; units in src/field/kinds.rs.

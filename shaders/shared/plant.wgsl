@@ -46,6 +46,16 @@ fn draw_between(range: vec2f, random: ptr<function, u32>) -> f32 {
     return range.x + range.y * unit(pcg_next(random));
 }
 
+// Azimuth of a plant from its random number: evenly all around, or thinning out from the light's.
+fn azimuth_turns(towards: vec2f, random: f32) -> f32 {
+    if towards.y < 0.0 {
+        return random;
+    }
+    let side = 2.0 * random - 1.0;
+    let away = 1.0 - sqrt(1.0 - abs(side));
+    return towards.x + towards.y * select(away, -away, side < 0.0);
+}
+
 // A kind by the shares alone.
 fn by_share(word: u32) -> KindChoice {
     for (var kind = 0u; kind < field.species_count; kind++) {
@@ -132,7 +142,7 @@ fn plant_of(tile: TileRecord, seed: Seed, choice: KindChoice) -> Plant {
     let stiffness = field.species[plant.species].stiffness;
     plant.stiffness = draw_between(vec2f(stiffness.x, stiffness.y * vigour), &random);
     plant.lean = draw_between(field.species[plant.species].lean, &random);
-    let turns = unit(pcg_next(&random));
+    let turns = azimuth_turns(field.species[plant.species].towards, unit(pcg_next(&random)));
     plant.azimuth = vec2f(cos_turns(turns), sin_turns(turns));
     plant.flexibility = field.species[plant.species].flexibility;
     plant.flutter_turns = unit(pcg_next(&random));

@@ -20,6 +20,9 @@ use super::kinds::{Choice, Kinds};
 /// Most kinds of plants in one meadow.
 pub const MAX_SPECIES: usize = 8;
 
+/// [`SpeciesNumbers::towards`] of a kind that leans to all sides alike.
+const NO_LIGHT: [f32; 2] = [0.0, -1.0];
+
 /// One plant, in its anchor's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plant {
@@ -49,6 +52,9 @@ pub struct SpeciesNumbers {
     /// Smallest place in the blade table and the span of places.
     pub stiffness: [f32; 2],
     pub lean: [f32; 2],
+    /// Azimuth of the light and how far from it plants lean, in turns; the latter below 0 where they
+    /// lean to all sides alike.
+    pub towards: [f32; 2],
     pub flexibility: f32,
     pub tint_rgb: [f32; 3],
     /// Part of its height and stiffness that a plant lacks where the ground is another kind's.
@@ -202,7 +208,7 @@ impl Seeds {
         let width_m = draw(kind.width_m);
         let stiffness = draw([kind.stiffness[0], kind.stiffness[1] * vigour]);
         let lean = draw(kind.lean);
-        let turns = unit(random.next_word());
+        let turns = azimuth_turns(kind.towards, unit(random.next_word()));
         Plant {
             root_in_anchor,
             azimuth: [cos_turns(turns), sin_turns(turns)],
@@ -216,6 +222,18 @@ impl Seeds {
             shade: random.next_word(),
         }
     }
+}
+
+/// Azimuth of a plant from its random number: evenly all around, or with a density that falls along
+/// straight lines from the light's azimuth to both sides, where the inverse of the distribution is a
+/// square root.
+fn azimuth_turns([light, spread]: [f32; 2], random: f32) -> f32 {
+    if spread < 0.0 {
+        return random;
+    }
+    let side = 2.0 * random - 1.0;
+    let away = 1.0 - (1.0 - side.abs()).sqrt();
+    light + spread * if side < 0.0 { -away } else { away }
 }
 
 /// Steps that a seeding cell's side is divided into.
@@ -245,10 +263,41 @@ fn numbers(kind: &Species, range: &SpeciesRange, share_below: u32) -> SpeciesNum
         width_m: span(kind.width_m),
         stiffness: span(range.stiffness),
         lean: span(range.lean),
+        towards: kind.phototropic.map_or(NO_LIGHT, |towards| {
+            [
+                towards.light_deg.rem_euclid(360.0) / 360.0,
+                towards.spread_deg / 360.0,
+            ]
+        }),
         flexibility: kind.flexibility,
         tint_rgb: kind.tint_rgb,
         dwindle: kind.likes.as_ref().map_or(0.0, |likes| likes.dwindle),
         bends: kind.response == Response::Bends,
         form: kind.form,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One peak at the light's azimuth, falling to nothing at the spread on both sides: with a
+    /// triangular density half the spread holds three quarters of the plants, a quarter 7/16.
+    #[test]
+    fn phototropic_plants_crowd_about_the_light() {
+        let towards = [0.6, 0.25];
+        let count = 1 << 16;
+        let turns = (0..count).map(|n| azimuth_turns(towards, n as f32 / count as f32));
+        let away: Vec<f32> = turns.map(|turns| turns - towards[0]).collect();
+        assert!(away.iter().all(|away| away.abs() <= towards[1]));
+        let within = |share: f32| {
+            let inside = away.iter().filter(|a| a.abs() < share * towards[1]).count();
+            inside as f64 / f64::from(count)
+        };
+        assert!((within(0.5) - 0.75).abs() < 1e-3);
+        assert!((within(0.25) - 0.4375).abs() < 1e-3);
+        let left = away.iter().filter(|&&a| a < 0.0).count();
+        assert!(left.abs_diff(count as usize / 2) <= 1);
+        assert_eq!(azimuth_turns(NO_LIGHT, 0.37), 0.37);
     }
 }

@@ -38,7 +38,9 @@ gpu_struct! {
         pub share_below: u32,
         pub dwindle: f32,
         pub bends: u32,
-        pub spare: u32,
+        pub spare_a: u32,
+        pub towards: [f32; 2],
+        pub spare_b: [u32; 2],
     }
 }
 
@@ -141,7 +143,9 @@ impl From<&SpeciesNumbers> for SpeciesUniform {
             share_below: kind.share_below,
             dwindle: kind.dwindle,
             bends: kind.bends.into(),
-            spare: 0,
+            spare_a: 0,
+            towards: kind.towards,
+            spare_b: [0; 2],
         }
     }
 }

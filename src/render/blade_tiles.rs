@@ -37,6 +37,17 @@ pub enum Submission {
     Bins,
 }
 
+/// What happens where the camera's distance changes how many plants are drawn, and how finely.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Transition {
+    /// The last plants of a triangle's prefix are small, and nodes that the next detail lacks move to
+    /// its straight segments before it comes.
+    #[default]
+    Smooth,
+    /// Plants and segments come and go at once, as in P15.
+    Plain,
+}
+
 /// How far and how finely blades are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BladeDetail {
@@ -49,6 +60,9 @@ pub struct BladeDetail {
     pub tuft: u32,
     pub count: Count,
     pub submission: Submission,
+    pub transition: Transition,
+    /// Whether plants within `full_m` cast shadows on the ground: P15 section 3.6.
+    pub shadows: bool,
 }
 
 impl Default for BladeDetail {
@@ -59,6 +73,8 @@ impl Default for BladeDetail {
             tuft: 4,
             count: Count::Distance,
             submission: Submission::Exact,
+            transition: Transition::Smooth,
+            shadows: true,
         }
     }
 }
@@ -70,8 +86,7 @@ impl BladeDetail {
             full_m: 4.0,
             reach_m: 50.0,
             tuft: 3,
-            count: Count::Distance,
-            submission: Submission::Exact,
+            ..Self::default()
         }
     }
 
@@ -115,8 +130,8 @@ gpu_struct! {
     }
 }
 
-/// Distance of a band's end over that of its start.
-const BAND_RATIO: f64 = std::f64::consts::SQRT_2;
+/// Part of a detail's range, in doublings of the distance, over which it turns into the next.
+const MORPH_DOUBLINGS: f64 = 0.5;
 /// Share of the lost cover that the remaining blades make up for by their width; the ground's
 /// own look supplies the rest.
 pub(super) const WIDEN_POWER: f32 = 0.75;
@@ -140,7 +155,7 @@ struct Sight {
     tile: TileId,
     /// From the eye.
     distance_m: f64,
-    band: u32,
+    level: f64,
 }
 
 /// Tiles in sight, near to far. The work follows the tiles within reach, not the meadow.
@@ -186,7 +201,7 @@ fn sight_of(
     Some(Sight {
         tile,
         distance_m,
-        band: band_at(input.detail, distance_m),
+        level: level_at(input.detail, distance_m),
     })
 }
 
@@ -198,19 +213,25 @@ pub(super) fn drawn_tiles(input: &BladesInput<'_>, view: &View, picture: Size) -
         .collect()
 }
 
-/// Bands start at half the distance of full density; band 0 lies before that.
-fn band_at(detail: BladeDetail, distance_m: f64) -> u32 {
+/// Doublings of the distance from half that of full density; below 0 before that.
+fn level_at(detail: BladeDetail, distance_m: f64) -> f64 {
     let relative = distance_m / (0.5 * f64::from(detail.full_m));
-    if relative <= 1.0 {
-        0
-    } else {
-        (relative.ln() / BAND_RATIO.ln()).floor() as u32 + 1
-    }
+    libm::log2(relative.max(1e-3))
 }
 
-/// Detail of a band's plants, 0 the finest: each of the following is good for two bands.
-fn detail_of(band: u32) -> u32 {
-    band.div_ceil(2).min(DETAILS - 1)
+/// Detail of the plants at a level, 0 the finest: each of the following is good for a doubling.
+fn detail_of(level: f64) -> u32 {
+    (level.max(0.0).ceil() as u32).min(DETAILS - 1)
+}
+
+/// How far the plants at a level are on their way to the next coarser detail, 0 to 1.
+fn morph_of(detail: BladeDetail, level: f64) -> f32 {
+    let own = detail_of(level);
+    if detail.transition == Transition::Plain || own == DETAILS - 1 {
+        return 0.0;
+    }
+    let left = f64::from(own) - level;
+    (1.0 - left / MORPH_DOUBLINGS).clamp(0.0, 1.0) as f32
 }
 
 fn slab_of(input: &BladesInput<'_>, tile: TileId) -> Option<u32> {
@@ -260,9 +281,9 @@ fn drawn_tile(input: &BladesInput<'_>, view: &View, picture: Size, sight: &Sight
         tile: record,
         anchor_from_eye: view.from_eye(origin),
         bound,
-        detail: detail_of(sight.band),
+        detail: detail_of(sight.level),
         most_places: most.ceil() as u32 * grid.triangles_per_tile(),
-        morph: 0.0,
+        morph: morph_of(input.detail, sight.level),
         spare: 0,
     }
 }
@@ -274,11 +295,29 @@ mod tests {
     #[test]
     fn detail_falls_with_distance() {
         let detail = BladeDetail::default();
-        assert_eq!(detail_of(band_at(detail, 0.0)), 0);
-        let at = |metres: f64| detail_of(band_at(detail, metres));
+        assert_eq!(detail_of(level_at(detail, 0.0)), 0);
+        let at = |metres: f64| detail_of(level_at(detail, metres));
         assert!((0..500).all(|step| at(f64::from(step)) <= at(f64::from(step + 1))));
         assert_eq!(at(0.49 * 12.0), 0);
         assert_eq!(at(0.51 * 12.0), 1);
         assert_eq!(at(1e6), DETAILS - 1);
+    }
+
+    /// A detail ends as its next, and begins as itself.
+    #[test]
+    fn details_turn_into_each_other() {
+        let detail = BladeDetail::default();
+        for end in 0..DETAILS - 1 {
+            let level = f64::from(end);
+            assert_eq!(morph_of(detail, level), 1.0);
+            assert!(morph_of(detail, level - 1e-3) > 0.99);
+            assert_eq!(morph_of(detail, level + 1e-3), 0.0);
+        }
+        assert_eq!(morph_of(detail, 20.0), 0.0);
+        let plain = BladeDetail {
+            transition: Transition::Plain,
+            ..detail
+        };
+        assert_eq!(morph_of(plain, 0.0), 0.0);
     }
 }

@@ -8,6 +8,7 @@ mod blade_tiles;
 mod blades;
 mod bodies;
 mod camera;
+mod canopy;
 mod error;
 mod flowers;
 mod frame;
@@ -33,7 +34,7 @@ mod twigs;
 mod view_group;
 
 pub use active_nodes::ActiveNodes;
-pub use blade_tiles::{BladeDetail, Count, Submission};
+pub use blade_tiles::{BladeDetail, Count, Submission, Transition};
 pub use bodies::BodyInstance;
 pub use camera::{Frustum, View};
 pub use error::RenderError;
@@ -84,6 +85,7 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/light.wgsl"),
     wgsl_file!("shared/noise.wgsl"),
     wgsl_file!("shared/plant_light.wgsl"),
+    wgsl_file!("shared/planar_shadow.wgsl"),
     wgsl_file!("shared/screen.wgsl"),
     wgsl_file!("shared/shadow.wgsl"),
     wgsl_file!("blades.wgsl", TUFT_RADIUS_M, TUFT_TURNS),

@@ -13,56 +13,24 @@ use crate::scene::Form;
 
 use super::blade_tiles::{BladeDetail, DrawnTile, Size, drawn_tiles, most_on_triangle};
 use super::camera::View;
+use super::canopy::Canopy;
 use super::ground_look::GroundTexture;
 use super::pipeline::{Drawing, READ_STORAGE, SAMPLER, TEXTURE, UNIFORM, bind_group, group_layout};
-use super::plant_form::{BUCKETS, DETAILS, FORM_BLADE, FORMS, form_index};
+use super::plant_form::{BUCKETS, DETAILS, FORM_BLADE, FORMS, FormDrawing, form_index};
 use super::seed_triangles::SeededTriangles;
 use super::sort_plants::{DrawArgs, PlantSort, SortInput};
 use super::view_group::ViewGroups;
 
-/// The plants as a whole, as far as the light is concerned.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Canopy {
-    /// Height of the tallest kind, 0 where nothing grows.
-    pub(super) height_m: f32,
-    /// Share of the ground's sky that plants hide, 0 to 1.
-    pub(super) cover: f32,
-}
-
-impl Canopy {
-    pub(super) fn of(field: &Field) -> Self {
-        if field.is_bare() {
-            return Self {
-                height_m: 0.0,
-                cover: 0.0,
-            };
-        }
-        let kinds = &field.seeds.species;
-        let mean = |[low, span]: [f32; 2]| low + 0.5 * span;
-        // What lies on the ground hides none of its sky.
-        let stands = |form: &Form| !matches!(form, Form::Twig | Form::Gravel);
-        let area_m2: f32 = kinds
-            .iter()
-            .filter(|kind| stands(&kind.form))
-            .map(|kind| mean(kind.height_m) * mean(kind.width_m))
-            .sum::<f32>()
-            / kinds.len() as f32;
-        let cell_m2 = field.grid.cell_m * field.grid.cell_m;
-        // Companions are thinner and shorter: two of them hide about as much as a plant.
-        let per_m2 = 2.0 * field.grid.plants_per_triangle() as f32 / cell_m2 * 2.0;
-        Self {
-            height_m: field.reach_m,
-            // Beer's law for leaves that stand at random angles.
-            cover: 1.0 - (-area_m2 * per_m2).exp(),
-        }
-    }
-}
+/// Details whose plants have shadows: those of plants that are nearer than
+/// [`BladeDetail::full_m`], at the end of which shadows have faded.
+const SHADOW_DETAILS: u32 = 2;
 
 gpu_struct! {
     pub(super) struct Bucket {
         stride: u32,
         steps: u32,
-        spare: [u32; 2],
+        coarser: u32,
+        spare: u32,
     }
 }
 
@@ -145,8 +113,10 @@ struct PlantScene {
 /// Draws the plants.
 #[derive(Debug)]
 pub(super) struct PlantsLayer {
-    /// One per form.
+    /// One per form, for the plants and for their shadows on the ground.
     pipelines: Vec<wgpu::RenderPipeline>,
+    shadows: Vec<wgpu::RenderPipeline>,
+    has_shadows: bool,
     layout: wgpu::BindGroupLayout,
     look: Buffer<PlantLook>,
     sort: PlantSort,
@@ -176,21 +146,27 @@ impl PlantsLayer {
         let field_layout = FieldBuffers::layout(gpu);
         let mut used = groups.lit(&layout);
         used[0] = Some(&field_layout);
-        let pipelines = FORMS.iter().map(|form| {
+        let pipeline = |form: &FormDrawing, vertex, fragment, topology| {
             Drawing {
                 shader: form.shader,
-                vertex: form.vertex,
-                fragment: form.fragment,
+                vertex,
+                fragment,
                 groups: used,
-                topology: form.topology,
+                topology,
                 samples,
                 alpha_to_coverage: samples > 1,
                 ..Drawing::default()
             }
             .pipeline(gpu)
-        });
+        };
+        let pipelines =
+            (FORMS.iter()).map(|form| pipeline(form, form.vertex, form.fragment, form.topology));
+        let shadows = (FORMS.iter())
+            .map(|form| pipeline(form, "shadow_vertex", "shadow_fragment", form.topology));
         Ok(Self {
             pipelines: pipelines.collect::<Result<_, _>>()?,
+            shadows: shadows.collect::<Result<_, _>>()?,
+            has_shadows: false,
             look: Buffer::new(gpu, "plant look", 1, BufferUsages::UNIFORM)?,
             sort: PlantSort::new(gpu)?,
             layout,
@@ -251,6 +227,7 @@ impl PlantsLayer {
             forms.contains(&(bucket / DETAILS)) && tiles.iter().any(is_near)
         };
         self.used = (0..BUCKETS).filter(used).collect();
+        self.has_shadows = input.detail.shadows;
         let grown = self.sort.write(
             gpu,
             &SortInput {
@@ -312,9 +289,22 @@ impl PlantsLayer {
         };
         pass.set_bind_group(0, &scene.buffers.bind_group, &[]);
         pass.set_bind_group(3, group, &[]);
+        self.draw_buckets(pass, &self.pipelines, DETAILS);
+        if self.has_shadows {
+            self.draw_buckets(pass, &self.shadows, SHADOW_DETAILS);
+        }
+    }
+
+    /// Draws the plants of the finest `details` with one pipeline per form.
+    fn draw_buckets(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        pipelines: &[wgpu::RenderPipeline],
+        details: u32,
+    ) {
         for of_form in self.used.chunk_by(|a, b| a / DETAILS == b / DETAILS) {
-            pass.set_pipeline(&self.pipelines[(of_form[0] / DETAILS) as usize]);
-            for &bucket in of_form {
+            pass.set_pipeline(&pipelines[(of_form[0] / DETAILS) as usize]);
+            for &bucket in of_form.iter().filter(|&bucket| bucket % DETAILS < details) {
                 let offset = u64::from(bucket) * size_of::<DrawArgs>() as u64;
                 pass.draw_indirect(&self.sort.draws.raw, offset);
             }
@@ -358,11 +348,14 @@ fn plant_look(scene: &PlantScene, reach_m: f32, segments: u32, samples: u32) -> 
     let mut buckets = [Bucket {
         stride: 1,
         steps: 1,
-        spare: [0; 2],
+        coarser: 1,
+        spare: 0,
     }; BUCKETS as usize];
     for (place, bucket) in buckets.iter_mut().zip(0..) {
         let form = &FORMS[(bucket / DETAILS) as usize];
-        [place.stride, place.steps] = form.steps(bucket % DETAILS, segments);
+        let detail = bucket % DETAILS;
+        [place.stride, place.steps] = form.steps(detail, segments);
+        [place.coarser, _] = form.steps((detail + 1).min(DETAILS - 1), segments);
     }
     let mut forms = [FormUniform {
         petal_rgb: [0.0; 3],

@@ -13,7 +13,7 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::gpu_struct;
 
 use super::SHADERS;
-use super::blade_tiles::{BladeDetail, Count, DrawnTile, Size, Submission};
+use super::blade_tiles::{BladeDetail, Count, DrawnTile, Size, Submission, Transition};
 use super::blades::TUFT_RADIUS_M;
 use super::camera::View;
 use super::plant_form::{BUCKETS, DETAILS, FORM_COUNT, FORMS};
@@ -38,7 +38,7 @@ gpu_struct! {
         forward: [f32; 3],
         rule: u32,
         most: f32,
-        spare_a: f32,
+        is_plain: u32,
         spare_b: [f32; 2],
     }
 }
@@ -285,7 +285,7 @@ fn count_uniform(input: &SortInput<'_>) -> CountUniform {
         forward: input.view.forward.to_f32(),
         rule,
         most: input.most,
-        spare_a: 0.0,
+        is_plain: u32::from(input.detail.transition == Transition::Plain),
         spare_b: [0.0; 2],
     }
 }

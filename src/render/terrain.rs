@@ -18,13 +18,14 @@ use crate::terrain::HeightGrid;
 use crate::terrain::bintree::MeshChange;
 
 use super::camera::View;
+use super::canopy::Canopy;
 use super::error::RenderError;
 use super::ground_look::{GroundTexture, TASTE_ROWS, looks};
 use super::ground_mesh::{GroundMesh, TerrainDetail};
 use super::pipeline::{
     DepthUse, Drawing, READ_STORAGE, SAMPLER, TEXTURE, UNIFORM, bind_group, group_layout,
 };
-use super::plants::{BladesInput, Canopy};
+use super::plants::BladesInput;
 use super::view_group::ViewGroups;
 
 /// Samples along a chunk's side; one less is its number of squares, an even number.

@@ -75,6 +75,8 @@ pub struct Species {
     /// Lean of the root from the vertical, in degrees.
     #[schemars(inner(range(min = limits::ROOT_LEAN.min, max = limits::ROOT_LEAN.max)))]
     pub lean_deg: [f32; 2],
+    /// Where its plants lean to; without it to all sides alike.
+    pub phototropic: Option<Phototropic>,
     /// How far wind bends the tip: 0 rigid, 1 as the wind's strength says.
     #[schemars(range(min = limits::FLEXIBILITY.min, max = limits::FLEXIBILITY.max))]
     pub flexibility: f32,
@@ -95,8 +97,32 @@ impl Default for Species {
             width_m: [0.005, 0.009],
             stiffness: [60.0, 160.0],
             lean_deg: [2.0, 16.0],
+            phototropic: None,
             flexibility: 1.0,
             tint_rgb: [1.0, 1.0, 1.0],
+        }
+    }
+}
+
+/// A kind that grows towards the light: P15 section 2.3. The directions its plants lean to are dense
+/// about the light's and thin out evenly to both sides.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Phototropic {
+    /// Direction towards the light, from +x towards +z, in degrees.
+    #[schemars(range(min = limits::ANGLE.min, max = limits::ANGLE.max))]
+    pub light_deg: f32,
+    /// Largest angle between the light and where a plant leans to, in degrees.
+    #[schemars(range(min = limits::AZIMUTH_SPREAD.min, max = limits::AZIMUTH_SPREAD.max))]
+    pub spread_deg: f32,
+}
+
+impl Default for Phototropic {
+    /// The sun of pictures, unless it is told otherwise.
+    fn default() -> Self {
+        Self {
+            light_deg: 215.0,
+            spread_deg: 90.0,
         }
     }
 }

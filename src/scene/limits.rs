@@ -97,6 +97,8 @@ pub const PLANT_WIDTH: Range = range(0.0001, 1.0, "m");
 /// k′, the range over which the blade-shape solver is tested.
 pub const STIFFNESS: Range = range(1e-6, 1e6, "");
 pub const ROOT_LEAN: Range = range(0.0, 90.0, "degrees");
+/// Of the directions that phototropic plants lean to, on either side of the light.
+pub const AZIMUTH_SPREAD: Range = range(0.0, 180.0, "degrees");
 pub const FLEXIBILITY: Range = range(0.0, 10.0, "");
 pub const TINT: Range = range(0.0, 10.0, "");
 pub const WIND_BEND: Range = range(0.0, 10.0, "");

@@ -29,7 +29,7 @@ pub use body::{Body, Collider, Mass, Motion, Part, Shape, Waypoint};
 pub use camera::Camera;
 pub use error::{AssetError, Problem, SceneError};
 pub use expect::Expectation;
-pub use grass::{Form, Grass, Likes, Response, Species};
+pub use grass::{Form, Grass, Likes, Phototropic, Response, Species};
 pub use load::{
     LoadedScene, load_scene, parse_scene, parse_scene_with, parse_value, read_text, scene_files,
     to_ron, value_to_ron,

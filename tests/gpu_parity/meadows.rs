@@ -6,7 +6,9 @@ use std::sync::Arc;
 use libtest_mimic::Failed;
 use sward::base::philox::philox2x32;
 use sward::field::Field;
-use sward::scene::{Collider, Grass, Likes, LoadedScene, Solver, Species, parse_scene};
+use sward::scene::{
+    Collider, Grass, Likes, LoadedScene, Phototropic, Solver, Species, parse_scene,
+};
 use sward::sim::Meadow;
 use sward::terrain::{ColourMap, HeightGrid};
 
@@ -32,6 +34,10 @@ pub fn leaning_field(solver: &Solver, lean_deg: [f32; 2]) -> Result<Field, Faile
                 height_m: [0.08, 0.2],
                 stiffness: [50.0, 400.0],
                 lean_deg,
+                phototropic: Some(Phototropic {
+                    light_deg: 150.0,
+                    spread_deg: 120.0,
+                }),
                 flexibility: 0.6,
                 ..Species::default()
             },

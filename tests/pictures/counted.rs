@@ -147,6 +147,7 @@ pub fn plants_are_sorted_by_form(gpu: &Gpu) -> Result<(), Failed> {
                 tuft: 2,
                 count,
                 submission,
+                ..BladeDetail::default()
             };
             let (want, _) = expected(&stage.meadow.field, &view, detail);
             let got = drawn(gpu, &mut stage, &view, detail)?;

@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use super::outputs::make_folder;
-use super::{bench_submission, bench_terrain, scene_file};
+use super::{bench_popping, bench_submission, bench_terrain, scene_file};
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
 use crate::app::progress::Progress;
@@ -45,6 +45,8 @@ enum Bench {
     /// Plants in view listed by exact counts and by 32 bins: time and error of the density; needs a
     /// graphics adapter
     Submission,
+    /// How much pictures of a slow camera change because plants come and go; needs a graphics adapter
+    Popping,
 }
 
 /// Scene of a million blades.
@@ -63,6 +65,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     match arguments.what {
         Bench::Tiles => run_tiles(arguments, out),
         Bench::Terrain => bench_terrain::run(arguments, out),
+        Bench::Popping => bench_popping::run(arguments, out),
         Bench::Submission => bench_submission::run(arguments, out),
     }
 }

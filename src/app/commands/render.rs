@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::outputs::ResultFile;
 use super::scene_file;
@@ -13,7 +13,7 @@ use crate::app::device::EngineArguments;
 use crate::app::progress::Progress;
 use crate::app::values::{number, whole};
 use crate::gpu::Gpu;
-use crate::render::{Animation, Picture, PictureTarget};
+use crate::render::{Animation, Picture, PictureTarget, Submission, Sun};
 use crate::run::{Exit, Stage};
 use crate::scene::limits;
 
@@ -54,6 +54,16 @@ pub struct Arguments {
     /// Show which tiles are awake
     #[arg(long)]
     overlay: bool,
+    /// The sun's height over the horizon in degrees, 2 to 90, and after a comma where it stands, from +x
+    /// towards +z
+    #[arg(long, value_name = "HEIGHT[,AZIMUTH]", value_parser = sun)]
+    sun: Option<Sun>,
+    /// How plants are submitted: by the exact counts of triangles, or by the 32 bins of P15
+    #[arg(long, value_enum, default_value = "exact")]
+    submission: SubmissionName,
+    /// Leave the shadows of plants on the ground out
+    #[arg(long)]
+    no_plant_shadows: bool,
     #[command(flatten)]
     engine: EngineArguments,
     /// Another folder in which assets are looked up; may be repeated
@@ -62,6 +72,12 @@ pub struct Arguments {
     /// The picture: a name that ends in .png, or in .apng for an animation
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum SubmissionName {
+    Exact,
+    Bins,
 }
 
 /// Longest side of a picture, in pixels.
@@ -82,6 +98,12 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     let target = PictureTarget::new(&gpu, arguments.size)?;
     let mut stage = Stage::new(&gpu, &loaded, choice, PictureTarget::FORMAT, arguments.size)?;
     stage.camera(arguments.camera.as_deref())?;
+    stage.sun = arguments.sun.unwrap_or(stage.sun);
+    stage.detail.shadows &= !arguments.no_plant_shadows;
+    stage.detail.submission = match arguments.submission {
+        SubmissionName::Exact => Submission::Exact,
+        SubmissionName::Bins => Submission::Bins,
+    };
     // A place that cannot be written to is told before time is spent on pictures.
     let first = match arguments.frames {
         frames if frames > 1 && !animated => numbered(&arguments.out, 0),
@@ -127,6 +149,26 @@ pub fn size(text: &str) -> Result<[u32; 2], String> {
         size.iter().all(fits).then_some(size)
     });
     sides.ok_or_else(|| format!("give WIDTHxHEIGHT, each 1 to {MOST_PIXELS}, such as 1280x720"))
+}
+
+/// Parses a place of the sun such as `12` or `12,90`.
+fn sun(text: &str) -> Result<Sun, String> {
+    let mut numbers = text.splitn(2, ',').map(str::parse::<f32>);
+    let told = match (numbers.next(), numbers.next()) {
+        (Some(Ok(height)), None) => Some((height, Sun::default().azimuth_deg)),
+        (Some(Ok(height)), Some(Ok(azimuth))) => Some((height, azimuth)),
+        _ => None,
+    };
+    let fits = |&(height, azimuth): &(f32, f32)| {
+        (2.0..=90.0).contains(&height) && (-360.0..=360.0).contains(&azimuth)
+    };
+    let (elevation_deg, azimuth_deg) = told.filter(fits).ok_or(
+        "give a height of 2 to 90 degrees, or that and an azimuth of -360 to 360, such as 12,90",
+    )?;
+    Ok(Sun {
+        elevation_deg,
+        azimuth_deg,
+    })
 }
 
 /// Whether a file name asks for an animation.
@@ -249,6 +291,16 @@ mod tests {
         assert_eq!(size("640x480"), Ok([640, 480]));
         for wrong in ["", "640", "0x1", "8193x1", "640x", "axb", "-1x5", "1x2x3"] {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_sun_is_a_height_and_perhaps_an_azimuth() {
+        let told = sun("12,-90").map(|sun| [sun.elevation_deg, sun.azimuth_deg]);
+        assert_eq!(told, Ok([12.0, -90.0]));
+        assert_eq!(sun("5").map(|sun| sun.elevation_deg), Ok(5.0));
+        for wrong in ["", "1", "91", "NaN", "10,", "10,400", "10,20,30"] {
+            assert!(sun(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -24,7 +24,7 @@ use super::ui::{Painting, Ui};
 use super::{keys, screenshot};
 use crate::app::Failure;
 use crate::gpu::Gpu;
-use crate::render::{BladeDetail, Count, Submission, View};
+use crate::render::{BladeDetail, Count, Submission, Transition, View};
 use crate::run::StageError;
 
 /// Sides of the scene's picture over those of the window, where the processor draws.
@@ -37,6 +37,8 @@ const SOFTWARE_DETAIL: BladeDetail = BladeDetail {
     tuft: 2,
     count: Count::Distance,
     submission: Submission::Exact,
+    transition: Transition::Smooth,
+    shadows: true,
 };
 /// Weight of the newest frame in the smoothed time of a frame.
 const FRAME_WEIGHT: f64 = 0.1;

@@ -204,3 +204,32 @@ fn places_of_an_axis_run_from_end_to_end() {
         assert_eq!(axis.entry_and_rest(2.0), (7, 1.0));
     }
 }
+
+/// k′ is given for eight segments and grows with N³, so that a plant keeps its shape at any count. The
+/// error of N segments falls with N²; without the scaling four would stand upright and sixteen hang.
+#[test]
+fn the_segment_count_keeps_a_plants_shape() {
+    let tables = [4, 8, 16].map(|segments| {
+        BladeTable::new(&Grass::default(), segments, Root::Double, [64, 32]).expect("a plain kind")
+    });
+    let tip = |table: &BladeTable, stiffness: f64, lean: f64| {
+        let place = table.place(stiffness, lean);
+        let mut tip = [0.0; 2];
+        for segment in 0..table.segments as usize {
+            let [across, up] = table.direction(place, segment);
+            let length = across.hypot(up) * f64::from(table.segments);
+            tip = [tip[0] + across / length, tip[1] + up / length];
+        }
+        tip
+    };
+    let mut most = [0.0_f64; 2];
+    for step in 0..=40 {
+        let at = f64::from(step) / 40.0;
+        for lean in [0.0, 0.5, 1.0] {
+            let [four, eight, sixteen] = tables.each_ref().map(|table| tip(table, at, lean));
+            let gap = |a: [f64; 2]| (a[0] - sixteen[0]).hypot(a[1] - sixteen[1]);
+            most = [most[0].max(gap(four)), most[1].max(gap(eight))];
+        }
+    }
+    assert!(most[1] < 0.02 && most[0] < 5.0 * most[1] + 0.02, "{most:?}");
+}

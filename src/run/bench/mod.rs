@@ -2,12 +2,14 @@
 
 pub mod flight;
 pub mod machine;
+pub mod popping;
 mod rig;
 pub mod submission;
 pub mod terrain;
 pub mod tiles;
 
 pub use machine::Machine;
+pub use popping::{PoppingBench, bench_popping};
 pub use submission::{SubmissionBench, SubmissionError, bench_submission};
 pub use terrain::{TerrainBench, TerrainBenchError, bench_terrain};
 pub use tiles::{TilesBench, bench_tiles};

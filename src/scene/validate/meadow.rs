@@ -154,6 +154,12 @@ fn species(key: &Key, species: &Species) -> Check {
         &limits::STIFFNESS,
     )?;
     ordered(&key.field("lean_deg"), species.lean_deg, &limits::ROOT_LEAN)?;
+    if let Some(towards) = &species.phototropic {
+        let key = key.field("phototropic");
+        within(&key.field("light_deg"), towards.light_deg, &limits::ANGLE)?;
+        let spread = key.field("spread_deg");
+        within(&spread, towards.spread_deg, &limits::AZIMUTH_SPREAD)?;
+    }
     within(
         &key.field("flexibility"),
         species.flexibility,

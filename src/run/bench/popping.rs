@@ -1,0 +1,281 @@
+//! The bench of popping: how much of a picture's change from frame to frame comes from plants that
+//! appear and vanish, as P15 section 4 leaves them.
+//!
+//! A camera moves slowly through still grass. The same path is drawn with smooth transitions, with
+//! plain ones, and at full density, where nothing comes or goes: what changes there is the motion.
+//! Popping is what changes beyond that, as a root mean square: √(change² − change at full density²).
+//!
+//! Every moving edge flips single samples of a pixel, in all three alike, and so does a growing blade:
+//! that is the grain of the rasteriser, not a blade that pops up. So pictures are also compared after
+//! taking the mean over squares of pixels, where single samples hardly count.
+
+use serde::Serialize;
+
+use super::machine::Machine;
+use super::submission::SubmissionError;
+use super::tiles::Limit;
+use crate::base::Vec3;
+use crate::field::{Field, WindNow};
+use crate::gpu::{Buffer, Gpu, PassTimer};
+use crate::render::{
+    BladeDetail, BladesInput, Exposure, FrameInput, GroundLook, Picture, PictureTarget, Renderer,
+    Sun, Transition, View,
+};
+use crate::run::report::Adapter;
+use crate::scene::{Grass, Ground, Solver, Terrain};
+use crate::terrain::{ColourMap, HeightGrid};
+
+/// Field along x and z, in metres.
+const FIELD_M: [f32; 2] = [9.0, 15.0];
+/// Steps of the camera, in metres, and their number.
+const STEP_M: f64 = 0.008;
+const FRAMES: u32 = 41;
+const EYE_M: f64 = 1.2;
+const PICTURE: [u32; 2] = [320, 180];
+/// Sides of the squares of pixels over which pictures are averaged.
+const SQUARES_PX: [usize; 3] = [1, 4, 8];
+/// Distances at which plants begin to be left out and end.
+const FULL_M: f32 = 2.0;
+const REACH_M: f32 = 11.0;
+/// Least ratio of plain to smooth popping that `--check` lets pass, and the square it is taken over.
+const LEAST_RATIO: f64 = 5.0;
+const JUDGED: usize = 2;
+
+/// Results of the whole bench.
+#[derive(Clone, Debug, Serialize)]
+pub struct PoppingBench {
+    pub schema_version: u32,
+    /// Version of sward.
+    pub sward: &'static str,
+    pub machine: Machine,
+    pub adapter: Adapter,
+    pub frames: u32,
+    pub picture: [u32; 2],
+    pub rows: Vec<PoppingRow>,
+    pub limits: Vec<Limit>,
+}
+
+/// Popping over squares of one size, in steps of 8 bits.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct PoppingRow {
+    pub square_px: usize,
+    /// Root mean square change per frame of each path.
+    pub full_change: f64,
+    pub smooth_change: f64,
+    pub plain_change: f64,
+    /// What is beyond the change at full density.
+    pub smooth_popping: f64,
+    pub plain_popping: f64,
+}
+
+impl PoppingRow {
+    /// How much less smooth transitions pop; infinite where they do not at all.
+    pub fn ratio(&self) -> f64 {
+        self.plain_popping / self.smooth_popping
+    }
+}
+
+impl PoppingBench {
+    pub fn all_kept(&self) -> bool {
+        self.limits.iter().all(|limit| limit.kept)
+    }
+}
+
+/// Runs the bench; `progress` gets the share done.
+///
+/// # Errors
+///
+/// A device that cannot hold the plants.
+pub fn bench_popping(
+    gpu: &Gpu,
+    mut progress: impl FnMut(f64),
+) -> Result<PoppingBench, SubmissionError> {
+    let machine = Machine::now();
+    let mut rig = Rig::new(gpu)?;
+    let near = BladeDetail {
+        full_m: FULL_M,
+        reach_m: REACH_M,
+        tuft: 2,
+        // They end with `full_m`, which differs between the paths.
+        shadows: false,
+        ..BladeDetail::default()
+    };
+    let plain = BladeDetail {
+        transition: Transition::Plain,
+        ..near
+    };
+    let full = BladeDetail {
+        full_m: 1000.0,
+        reach_m: 2000.0,
+        ..near
+    };
+    let mut paths = Vec::new();
+    for (done, detail) in [full, near, plain].into_iter().enumerate() {
+        paths.push(rig.changes(gpu, detail, |share| progress((done as f64 + share) / 3.0))?);
+    }
+    let rows: Vec<PoppingRow> = (0..SQUARES_PX.len())
+        .map(|n| row(SQUARES_PX[n], [paths[0][n], paths[1][n], paths[2][n]]))
+        .collect();
+    let ratio = rows[JUDGED].ratio();
+    Ok(PoppingBench {
+        schema_version: 1,
+        sward: env!("CARGO_PKG_VERSION"),
+        machine,
+        adapter: Adapter::of(gpu),
+        frames: FRAMES,
+        picture: PICTURE,
+        limits: vec![Limit {
+            what: "smooth transitions pop less, over squares of 8 pixels, by a factor of at least",
+            measured: ratio,
+            limit: LEAST_RATIO,
+            unit: "",
+            kept: ratio >= LEAST_RATIO,
+        }],
+        rows,
+    })
+}
+
+/// From the mean squares of the changes at full density, with smooth and with plain transitions.
+fn row(square_px: usize, [full, smooth, plain]: [f64; 3]) -> PoppingRow {
+    let beyond = |change: f64| (change - full).max(0.0).sqrt();
+    PoppingRow {
+        square_px,
+        full_change: full.sqrt(),
+        smooth_change: smooth.sqrt(),
+        plain_change: plain.sqrt(),
+        smooth_popping: beyond(smooth),
+        plain_popping: beyond(plain),
+    }
+}
+
+/// A field with its renderer.
+struct Rig {
+    field: Field,
+    nodes: Buffer<[f32; 4]>,
+    renderer: Renderer,
+    target: PictureTarget,
+    timer: PassTimer,
+}
+
+impl Rig {
+    fn new(gpu: &Gpu) -> Result<Self, SubmissionError> {
+        let terrain = Terrain {
+            ground: Ground::Flat {
+                size_m: FIELD_M,
+                spacing_m: 1.0,
+            },
+            ..Terrain::default()
+        };
+        let [columns, rows] = FIELD_M.map(|side| side as u32 + 1);
+        let ground = HeightGrid::flat(columns, rows, 1.0);
+        let field = Field::new(ground, &Grass::default(), &Solver::default())?;
+        let mut renderer = Renderer::new(gpu, PictureTarget::FORMAT, PICTURE)?;
+        let look = GroundLook {
+            map: &ColourMap::of_patches(&terrain, &field.ground),
+            soil_rgb: terrain.soil_rgb,
+        };
+        renderer.set_scene(gpu, &field, &look, &[])?;
+        Ok(Self {
+            nodes: Buffer::new(gpu, "no nodes", 1, wgpu::BufferUsages::STORAGE)?,
+            target: PictureTarget::new(gpu, PICTURE)?,
+            timer: PassTimer::new(gpu, 16),
+            field,
+            renderer,
+        })
+    }
+
+    /// Mean squares of the changes from frame to frame, for every size of squares.
+    fn changes(
+        &mut self,
+        gpu: &Gpu,
+        detail: BladeDetail,
+        mut progress: impl FnMut(f64),
+    ) -> Result<[f64; SQUARES_PX.len()], SubmissionError> {
+        let mut sums = [0.0; SQUARES_PX.len()];
+        let mut last: Option<Picture> = None;
+        for frame in 0..FRAMES {
+            let picture = self.shoot(gpu, frame, detail)?;
+            if let Some(last) = &last {
+                for (sum, square) in sums.iter_mut().zip(SQUARES_PX) {
+                    *sum += mean_square_change(last, &picture, square);
+                }
+            }
+            last = Some(picture);
+            progress(f64::from(frame + 1) / f64::from(FRAMES));
+        }
+        Ok(sums.map(|sum| sum / f64::from(FRAMES - 1)))
+    }
+
+    fn shoot(
+        &mut self,
+        gpu: &Gpu,
+        frame: u32,
+        detail: BladeDetail,
+    ) -> Result<Picture, SubmissionError> {
+        let z = 0.5 * f64::from(FIELD_M[1]) - 1.0 - STEP_M * f64::from(frame);
+        let eye = Vec3::new(0.1, EYE_M, z);
+        let view = View::look_at(eye, eye + Vec3::new(0.0, -0.28, -1.0), 45.0);
+        let input = FrameInput {
+            view: &view,
+            sun: Sun::default(),
+            exposure: Exposure::default(),
+            bodies: &[],
+            blades: Some(BladesInput {
+                field: &self.field,
+                wind: &WindNow::default(),
+                active: &[],
+                active_nodes: &self.nodes,
+                detail,
+            }),
+            marks: &[],
+            time_s: 0.0,
+        };
+        self.renderer
+            .draw(gpu, &input, &self.target.view, &mut self.timer)?;
+        Ok(self.target.read(gpu)?)
+    }
+}
+
+/// Mean square of the differences of two pictures' colours, each averaged over squares of pixels.
+fn mean_square_change(a: &Picture, b: &Picture, square: usize) -> f64 {
+    let (width, height) = (a.width as usize, a.height as usize);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for top in (0..=height - square).step_by(square) {
+        for left in (0..=width - square).step_by(square) {
+            for channel in 0..3 {
+                let mut apart = 0.0;
+                for y in top..top + square {
+                    for x in left..left + square {
+                        let at = (y * width + x) * 4 + channel;
+                        apart += f64::from(a.rgba8[at]) - f64::from(b.rgba8[at]);
+                    }
+                }
+                apart /= (square * square) as f64;
+                sum += apart * apart;
+                count += 1.0;
+            }
+        }
+    }
+    sum / count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changes_are_averaged_over_squares() {
+        let black = Picture {
+            width: 4,
+            height: 4,
+            rgba8: vec![0; 64],
+        };
+        let mut dotted = black.clone();
+        dotted.rgba8[..4].fill(16);
+        assert_eq!(mean_square_change(&black, &dotted, 1), 16.0);
+        assert_eq!(mean_square_change(&black, &dotted, 2), 4.0);
+        assert_eq!(mean_square_change(&black, &dotted, 4), 1.0);
+        let row = row(1, [9.0, 13.0, 25.0]);
+        assert_eq!((row.smooth_popping, row.ratio()), (2.0, 2.0));
+    }
+}
