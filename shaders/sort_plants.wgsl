@@ -121,7 +121,8 @@ fn candidate_at(place: Place) -> Candidate {
     let plant = plant_of(drawn.tile, seed, choice);
     let root = drawn.anchor_from_eye + plant.root;
     // Plants at the end of sight are small.
-    var grown = shown * (1.0 - smoothstep(0.75, 1.0, length(root) / sorting.reach_m));
+    let away = distance(root, sorting.count.judge_from_eye);
+    var grown = shown * (1.0 - smoothstep(0.75, 1.0, away / sorting.reach_m));
     if sorting.count.is_plain == 1u && grown > 0.0 {
         grown = 1.0;
     }

@@ -15,7 +15,10 @@ struct CountUniform {
     most: f32,
     // 1 if plants and segments come and go at once.
     is_plain: u32,
-    spare_b: vec2f,
+    spare_a: vec2f,
+    // The place from which distances decide.
+    judge_from_eye: vec3f,
+    spare_b: f32,
 }
 
 // The corners of a seeding triangle, relative to the eye: the right angle, then the ends of its

@@ -1,8 +1,9 @@
 // Shadows of plants on the ground: P15 section 3.6. A plant is drawn a second time, each of its points
 // moved along the light onto the plane of the seeding triangle under its root, flat black, and as a
 // screen door: some of a pixel's samples. They cover ground only as far as its triangle's plane is the
-// ground. Deviations: they end where plants are no longer drawn in full, and fade where the sun is so
-// low that they would be many times as long as the plant, and in the shadow of a body.
+// ground. Deviations: they end at twice the distance up to which plants are drawn in full; they fade
+// where the sun is so low that they would be many times as long as the plant, and in the shadow of a
+// body; a closed canopy has none, since it hides the ground and dims it already (src/render/plants.rs).
 #import "shared/drawn_plant.wgsl"
 #import "shared/frame.wgsl"
 #import "shared/ground.wgsl"
@@ -35,7 +36,7 @@ fn planar_shadow(drawn: DrawnPlant, clip: vec4f) -> ShadowPoint {
     let lifted = (fallen + normal * SHADOW_LIFT_M) * (1.0 - SHADOW_NEARER);
 
     let distance = length(drawn.root_from_eye);
-    let near = 1.0 - smoothstep(0.6, 0.95, distance / frame.blade_full_m);
+    let near = 1.0 - smoothstep(1.1, 1.9, distance / frame.blade_full_m);
     let sun = smoothstep(FADES_IN.x, FADES_IN.y, facing)
         * sun_reaches_cheaply(drawn.root_from_eye + normal * 0.02);
     // Coverage has few steps: a lot per plant makes up for what lies between.

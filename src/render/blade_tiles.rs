@@ -61,8 +61,12 @@ pub struct BladeDetail {
     pub count: Count,
     pub submission: Submission,
     pub transition: Transition,
-    /// Whether plants within `full_m` cast shadows on the ground: P15 section 3.6.
+    /// Whether plants within twice `full_m` cast shadows on the ground, where
+    /// they leave some of it open: P15 section 3.6.
     pub shadows: bool,
+    /// The place from which distances decide what is drawn, where that is not the view's eye: what the
+    /// camera's way changes can then be told from its motion. Counts by area stay the view's.
+    pub judged_from: Option<Vec3<f64>>,
 }
 
 impl Default for BladeDetail {
@@ -75,6 +79,7 @@ impl Default for BladeDetail {
             submission: Submission::Exact,
             transition: Transition::Smooth,
             shadows: true,
+            judged_from: None,
         }
     }
 }
@@ -192,7 +197,8 @@ fn sight_of(
     // A blade may lean over its tile's border, and hang below a slope.
     let low = [low[0] - tall, heights[0] - 0.5 * tall, low[1] - tall];
     let high = [high[0] + tall, heights[1] + tall, high[1] + tall];
-    let eye = view.eye_in_world.to_f64();
+    let eye = input.detail.judged_from.unwrap_or(view.eye_in_world);
+    let eye = eye.to_f64();
     let nearest = [0, 1, 2].map(|a| eye[a].clamp(low[a], high[a]) - eye[a]);
     let distance_m = Vec3::<f64>::of(nearest).length();
     if distance_m >= f64::from(input.detail.reach_m) || !frustum.may_see(low, high) {

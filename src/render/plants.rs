@@ -21,9 +21,13 @@ use super::seed_triangles::SeededTriangles;
 use super::sort_plants::{DrawArgs, PlantSort, SortInput};
 use super::view_group::ViewGroups;
 
-/// Details whose plants have shadows: those of plants that are nearer than
+/// Details whose plants have shadows: those of plants that are nearer than twice
 /// [`BladeDetail::full_m`], at the end of which shadows have faded.
-const SHADOW_DETAILS: u32 = 2;
+const SHADOW_DETAILS: u32 = 3;
+
+/// Where plants hide more of the ground's sky than this, they hide the ground and the shadows on it, and
+/// cost a third of a frame for nothing to be seen.
+const CLOSED_COVER: f32 = 0.6;
 
 gpu_struct! {
     pub(super) struct Bucket {
@@ -227,7 +231,7 @@ impl PlantsLayer {
             forms.contains(&(bucket / DETAILS)) && tiles.iter().any(is_near)
         };
         self.used = (0..BUCKETS).filter(used).collect();
-        self.has_shadows = input.detail.shadows;
+        self.has_shadows = input.detail.shadows && scene.cover < CLOSED_COVER;
         let grown = self.sort.write(
             gpu,
             &SortInput {

@@ -39,7 +39,9 @@ gpu_struct! {
         rule: u32,
         most: f32,
         is_plain: u32,
-        spare_b: [f32; 2],
+        spare_a: [f32; 2],
+        judge_from_eye: [f32; 3],
+        spare_b: f32,
     }
 }
 
@@ -286,6 +288,9 @@ fn count_uniform(input: &SortInput<'_>) -> CountUniform {
         rule,
         most: input.most,
         is_plain: u32::from(input.detail.transition == Transition::Plain),
-        spare_b: [0.0; 2],
+        spare_a: [0.0; 2],
+        judge_from_eye: (input.detail.judged_from)
+            .map_or([0.0; 3], |place| input.view.from_eye(place)),
+        spare_b: 0.0,
     }
 }

@@ -31,17 +31,15 @@ fn write_table(bench: &PoppingBench, out: &mut impl Write) -> io::Result<()> {
     )?;
     writeln!(
         out,
-        "{:>9} {:>10} {:>10} {:>10} {:>12} {:>12} {:>7}",
-        "square px", "full", "smooth", "plain", "pops smooth", "pops plain", "ratio"
+        "{:>9} {:>10} {:>12} {:>12} {:>7}",
+        "square px", "motion", "pops smooth", "pops plain", "ratio"
     )?;
     for row in &bench.rows {
         writeln!(
             out,
-            "{:>9} {:>10.3} {:>10.3} {:>10.3} {:>12.3} {:>12.3} {:>7.1}",
+            "{:>9} {:>10.3} {:>12.4} {:>12.4} {:>7.1}",
             row.square_px,
-            row.full_change,
-            row.smooth_change,
-            row.plain_change,
+            row.motion,
             row.smooth_popping,
             row.plain_popping,
             row.ratio()
@@ -53,18 +51,11 @@ fn write_table(bench: &PoppingBench, out: &mut impl Write) -> io::Result<()> {
 
 /// Writes every row into `popping-ADAPTER.csv`.
 fn write_csv(bench: &PoppingBench, folder: &Path) -> Result<(), Failure> {
-    let mut text = String::from(
-        "square_px,full_change,smooth_change,plain_change,smooth_popping,plain_popping\n",
-    );
+    let mut text = String::from("square_px,motion,smooth_popping,plain_popping\n");
     for row in &bench.rows {
         text += &format!(
-            "{},{:.5},{:.5},{:.5},{:.5},{:.5}\n",
-            row.square_px,
-            row.full_change,
-            row.smooth_change,
-            row.plain_change,
-            row.smooth_popping,
-            row.plain_popping
+            "{},{:.5},{:.5},{:.5}\n",
+            row.square_px, row.motion, row.smooth_popping, row.plain_popping
         );
     }
     let file = folder.join(format!("popping-{}.csv", file_name(&bench.adapter.name)));

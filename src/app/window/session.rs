@@ -39,6 +39,7 @@ const SOFTWARE_DETAIL: BladeDetail = BladeDetail {
     submission: Submission::Exact,
     transition: Transition::Smooth,
     shadows: true,
+    judged_from: None,
 };
 /// Weight of the newest frame in the smoothed time of a frame.
 const FRAME_WEIGHT: f64 = 0.1;
