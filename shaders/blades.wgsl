@@ -23,16 +23,6 @@ fn taper(along: f32) -> f32 {
         * (1.0 - 0.35 * along);
 }
 
-// Taper of a joint, on its way to that of the coarser detail's straight edges.
-fn taper_at(joint: DrawnJoint) -> f32 {
-    if joint.morph <= 0.0 {
-        return taper(joint.along);
-    }
-    let ends = joint.coarser;
-    let share = (joint.along - ends.x) / (ends.y - ends.x);
-    return mix(taper(joint.along), mix(taper(ends.x), taper(ends.y), share), joint.morph);
-}
-
 // A blade of a plant's tuft: 0 is the simulated one, the others stand by it.
 struct Companion {
     shift: vec3f, // of the root, in metres
@@ -77,17 +67,43 @@ fn shadow_vertex(
     return planar_shadow(drawn, blade_point(drawn, vertex % BUCKET_VERTICES).clip);
 }
 
+// A point of the blade's edge.
+struct EdgePoint {
+    position: vec3f, // from the eye
+    radiance: vec3f,
+    opacity: f32,
+}
+
+// On the way to the next coarser detail points that it lacks move to its straight edges and take on
+// their light, so that nothing changes when it comes.
 fn blade_point(drawn: DrawnPlant, corner: u32) -> BladePoint {
+    let blade = companion(drawn.tile.tile, drawn.plant, drawn.companion);
+    let step = corner / 2u;
+    let node = min(step * drawn.bucket.stride, field.segments);
+    let side = select(select(-1.0, 1.0, (corner & 1u) == 1u), 0.0, step == drawn.bucket.steps);
+    var point = edge_point(drawn, blade, node, side);
+    let low = node - node % drawn.bucket.coarser;
+    let morph = drawn.tile.morph;
+    if morph > 0.0 && low != node && node != field.segments {
+        let high = min(low + drawn.bucket.coarser, field.segments);
+        let below = edge_point(drawn, blade, low, side);
+        let above = edge_point(drawn, blade, high, select(side, 0.0, high == field.segments));
+        let share = f32(node - low) / f32(high - low);
+        point.position = mix(point.position, mix(below.position, above.position, share), morph);
+        point.radiance = mix(point.radiance, mix(below.radiance, above.radiance, share), morph);
+        point.opacity = mix(point.opacity, mix(below.opacity, above.opacity, share), morph);
+    }
+    let clip = frame.clip_from_eye * vec4f(point.position, 1.0);
+    return BladePoint(clip, point.radiance, point.opacity, side);
+}
+
+fn edge_point(drawn: DrawnPlant, blade: Companion, node: u32, side: f32) -> EdgePoint {
     let plant = drawn.plant;
-    let blade = companion(drawn.tile.tile, plant, drawn.companion);
     let root_from_eye = drawn.root_from_eye + blade.shift;
     let distance = length(root_from_eye);
     let grown = drawn.grown;
-
-    let step = corner / 2u;
-    let joint = drawn_joint(drawn, step);
-    let pose = joint.node;
-    let along = joint.along;
+    let pose = drawn_node(drawn, node);
+    let along = f32(node) * field.segment_share;
     let reached = turned_level(pose.place - plant.root, blade.turn);
     let centre = root_from_eye + reached * (grown * blade.size);
     let direction = turned_level(pose.direction, blade.turn);
@@ -111,10 +127,9 @@ fn blade_point(drawn: DrawnPlant, corner: u32) -> BladePoint {
     // The whole blade is widened by one factor, from its mean width as seen.
     let seen_half_px = 0.7 * half_m * max(seen_share, 0.05) / pixel_m;
     let widened = max(LEAST_HALF_PX / seen_half_px, 1.0);
-    let side = select(select(-1.0, 1.0, (corner & 1u) == 1u), 0.0, step == drawn.bucket.steps);
     let seen_across = unit_or(seen, unit_or(cross(direction, sight), across));
     let spread = mix(across, seen_across, saturate(widened - 1.0));
-    let edge = spread * (side * half_m * widened * taper_at(joint) * sqrt(grown));
+    let edge = spread * (side * half_m * widened * taper(along) * sqrt(grown));
     let position = centre + edge;
 
     // A blade is bent across, along its midrib. Not where it is thin: samples beside its edges
@@ -128,11 +143,10 @@ fn blade_point(drawn: DrawnPlant, corner: u32) -> BladePoint {
     let light = light_between(plant_look.cover, depth, position);
     // The ground's colour at the root, a paler tip.
     let radiance = leaf_radiance(rgb * mix(0.8, 1.25, along), bent_normal, light, position);
-    let clip = frame.clip_from_eye * vec4f(position, 1.0);
     // Coverage has few steps; a lot per blade makes up for what lies between. Up to a third too
     // much cover is left, since a line of half its samples breaks up into dots.
     let lot = (shade_byte(plant, 0u) - 0.5) / f32(plant_look.samples);
-    return BladePoint(clip, through_air(radiance, position), 1.33 / widened + lot, side);
+    return EdgePoint(position, through_air(radiance, position), 1.33 / widened + lot);
 }
 
 // Detail of a blade's surface: a pale midrib and veins along it; gone before they alias. Deviation: a

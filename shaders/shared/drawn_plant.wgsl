@@ -138,10 +138,7 @@ fn drawn_node(drawn: DrawnPlant, node: u32) -> DrawnNode {
 struct DrawnJoint {
     node: DrawnNode,
     along: f32, // share of the way from root to tip
-    // The joints of the next coarser detail around it, as shares of the way, and how far it has come
-    // from its own place to theirs.
-    coarser: vec2f,
-    morph: f32,
+    morph: f32, // how far it is on its way to the next coarser detail
 }
 
 // Joint `step`. On the way to the next coarser detail those that it lacks move to its straight segments,
@@ -153,7 +150,7 @@ fn drawn_joint(drawn: DrawnPlant, step: u32) -> DrawnJoint {
     let coarser = drawn.bucket.coarser;
     let low = node - node % coarser;
     if drawn.tile.morph <= 0.0 || low == node || node == field.segments {
-        return DrawnJoint(own, along, vec2f(along), 0.0);
+        return DrawnJoint(own, along, 0.0);
     }
     let high = min(low + coarser, field.segments);
     let below = drawn_node(drawn, low);
@@ -163,8 +160,7 @@ fn drawn_joint(drawn: DrawnPlant, step: u32) -> DrawnJoint {
     let place = mix(own.place, mix(below.place, above.place, share), morph);
     let direction = mix(own.direction, mix(below.direction, above.direction, share), morph);
     let pressed = mix(own.pressed, mix(below.pressed, above.pressed, share), morph);
-    let around = vec2f(f32(low), f32(high)) * field.segment_share;
-    return DrawnJoint(DrawnNode(place, unit_or(direction, UP), pressed), along, around, morph);
+    return DrawnJoint(DrawnNode(place, unit_or(direction, UP), pressed), along, morph);
 }
 
 // Place on the base map of the plant's root, in metres from its corner.
