@@ -31,7 +31,7 @@ use crate::terrain::{ColourMap, HeightGrid};
 const FIELD_M: [f32; 2] = [9.0, 15.0];
 /// Steps of the camera, in metres, and their number.
 const STEP_M: f64 = 0.008;
-const FRAMES: u32 = 7;
+const FRAMES: u32 = 13;
 const EYE_M: f64 = 1.2;
 const PICTURE: [u32; 2] = [320, 180];
 /// Sides of the squares of pixels over which pictures are averaged.
