@@ -49,8 +49,11 @@ const BODIES: [Hollow; 4] = [
     },
 ];
 
+/// Waypoints of a body, given the height of its middle where it stands.
+type Way = fn(f64) -> String;
+
 /// Ways through the grass, for a body whose middle is `rest` above the ground when it stands.
-const WAYS: [(&str, fn(f64) -> String); 3] = [
+const WAYS: [(&str, Way); 3] = [
     ("pushed", |rest| {
         format!(
             "(at_s: 0, position_m: (-0.6, {rest}, 0.1)), (at_s: 1.2, position_m: (0.6, {rest}, 0.1))"
