@@ -12,7 +12,7 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 
 use super::SHADERS;
 use super::blade_tiles::{DrawnTile, Submission};
-use super::row_sums::{RowSums, Rows};
+use super::sum_rows::{RowSums, Rows};
 
 /// Words of the list's head: its jobs (WORKGROUP places each), the workgroups that take them (three
 /// words), its places, the place at which each bin ends, the triangles before each bin.

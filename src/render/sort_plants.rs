@@ -17,8 +17,8 @@ use super::blade_tiles::{BladeDetail, Count, DrawnTile, Size, Submission, Transi
 use super::blades::TUFT_RADIUS_M;
 use super::camera::View;
 use super::plant_form::{BUCKETS, DETAILS, FORM_COUNT, FORMS};
-use super::row_sums::{RowSums, Rows};
 use super::seed_triangles::{LIST_GROUPS, SeedTriangles, SeededTriangles};
+use super::sum_rows::{RowSums, Rows};
 
 /// A candidate that is not seen.
 pub(super) const NO_BUCKET: u32 = 63;
