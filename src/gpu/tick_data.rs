@@ -68,7 +68,8 @@ gpu_struct! {
         pub hold_m: f32,
         pub part_in_body: u32,
         pub parts_of_body: u32,
-        pub spare: [u32; 3],
+        pub spare_a: u32,
+        pub spare_b: [u32; 2],
         pub solid: SolidRecord,
     }
 }
@@ -176,7 +177,8 @@ impl ContactRecord {
             hold_m: hold_m(solid, uses_cube),
             part_in_body: contact.part_in_body,
             parts_of_body: contact.parts_of_body,
-            spare: [0; 3],
+            spare_a: 0,
+            spare_b: [0; 2],
             solid: *solid,
         }
     }
