@@ -158,6 +158,7 @@ fn plan(arguments: &Accuracy) -> Result<Plan, Failure> {
     let mut plan = Plan {
         blades: arguments.method.is_empty(),
         program,
+        quick: arguments.quick,
         ..Plan::default()
     };
     if !arguments.scene.is_empty() {

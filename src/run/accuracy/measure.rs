@@ -2,6 +2,7 @@
 //! by where it comes from.
 
 use super::lane::{FRAMES_PER_S, Kind, Lane, end_of_frame_s, frames};
+use super::plan::Context;
 use super::relative::Relative;
 use super::store::Row;
 use super::truth::Truth;
@@ -22,7 +23,7 @@ pub const MOST_RMS_M: f64 = 0.010;
 
 /// Runs methods on a scene in turns, frame by frame: each on the cpu engine for the total error and
 /// the time, with the same kernels in `f64` for the error of the method alone, and on a graphics
-/// device where there is one that knows the method. The default is timed with them in every frame.
+/// device where the plan asks for it and it knows the method. The default is timed with them in every frame.
 /// `progress` gets the share done.
 ///
 /// # Errors
@@ -32,13 +33,13 @@ pub fn measure(
     loaded: &LoadedScene,
     methods: &[&'static NamedMethod],
     truth: &Truth,
-    gpu: Option<&Device>,
+    context: &Context<'_>,
     mut progress: impl FnMut(f64),
 ) -> Result<Vec<Row>, RunError> {
     let mut default = Timed::new(Lane::new(loaded, &loaded.scene.solver, Kind::Single)?);
     let points = methods
         .iter()
-        .map(|&method| Point::new(loaded, method, gpu));
+        .map(|&method| Point::new(loaded, method, context.device_of(method.name)));
     let mut points = points.collect::<Result<Vec<Point>, RunError>>()?;
     let count = frames(loaded.scene.duration_s);
     for frame in 0..count {

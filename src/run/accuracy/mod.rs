@@ -120,10 +120,7 @@ pub fn run(
     let adapter = gpu.and_then(Device::gpu).map(Adapter::of);
     let points = |planned: &Planned| TRUTH_POINTS + planned.methods.len() as f64;
     let total: f64 = plan.scenes.iter().map(points).sum();
-    let context = Context {
-        program: plan.program,
-        gpu,
-    };
+    let context = plan.context(gpu);
     let mut done = 0.0;
     let mut scenes = Vec::new();
     for planned in &plan.scenes {
@@ -203,7 +200,7 @@ fn measure_missing(
     let mut done = TRUTH_POINTS + (planned.methods.len() - missing.len()) as f64;
     for turn in missing.chunks(TOGETHER) {
         let points = turn.len() as f64;
-        let rows = measure::measure(loaded, turn, &truth, context.gpu, |share| {
+        let rows = measure::measure(loaded, turn, &truth, context, |share| {
             progress(done + share * points);
         })?;
         for row in rows {
@@ -254,6 +251,7 @@ mod tests {
         run(&plan, &mut store, None, |_| {}).expect("a scene that runs");
         let as_now = Context {
             program: 0,
+            quick: false,
             gpu: None,
         };
         let known = as_now.key(&loaded(), "default");

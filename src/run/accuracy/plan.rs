@@ -24,6 +24,17 @@ const NOT_QUICK: [&str; 8] = [
     "table-256",
 ];
 
+/// Methods whose rounding the quick report measures: the default, closed forms, sub-steps and sweeps at
+/// either end. A software adapter takes several times as long for a method as the processor.
+const QUICK_ON_DEVICE: [&str; 6] = [
+    "default",
+    "analytic",
+    "substep-30",
+    "grass-steps-4",
+    "one-sweep",
+    "segments-4",
+];
+
 /// Scenes, and the methods that are run on each.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
@@ -32,6 +43,8 @@ pub struct Plan {
     pub blades: bool,
     /// Whatever tells this program from another: points of another one are not comparable.
     pub program: u64,
+    /// Whether rounding is measured of a few methods only.
+    pub quick: bool,
 }
 
 impl Plan {
@@ -49,10 +62,18 @@ impl Plan {
         planned.names().any(|name| name == row.method)
     }
 
+    /// What its points depend on, on a device.
+    pub fn context<'a>(&self, gpu: Option<&'a Device>) -> Context<'a> {
+        Context {
+            program: self.program,
+            quick: self.quick,
+            gpu,
+        }
+    }
+
     /// The keys of all points, as they would be measured now.
     pub fn keys(&self, gpu: Option<&Device>) -> BTreeSet<String> {
-        let program = self.program;
-        let context = Context { program, gpu };
+        let context = self.context(gpu);
         let keys = |planned| keys_of_scene(&context, planned);
         self.scenes.iter().flat_map(keys).collect()
     }
@@ -167,10 +188,18 @@ fn keeps_body_step(scene: &Scene, method: &NamedMethod) -> bool {
 pub struct Context<'a> {
     /// As in [`Plan::program`].
     pub program: u64,
+    /// As in [`Plan::quick`].
+    pub quick: bool,
     pub gpu: Option<&'a Device>,
 }
 
-impl Context<'_> {
+impl<'a> Context<'a> {
+    /// The device that a method's rounding is measured on, if it is.
+    pub fn device_of(&self, name: &str) -> Option<&'a Device> {
+        self.gpu
+            .filter(|_| !self.quick || QUICK_ON_DEVICE.contains(&name))
+    }
+
     /// The key of a point: the same for the same program, scene, settings and device.
     pub fn key(&self, loaded: &LoadedScene, name: &str) -> String {
         let mut solver = loaded.scene.solver.clone();
@@ -179,7 +208,7 @@ impl Context<'_> {
         }
         // A scene that was read can be written; one that could not would only share its key.
         let scene = to_ron(&loaded.scene).unwrap_or_default();
-        let device = self.gpu.and_then(Device::gpu).map(Adapter::of);
+        let device = self.device_of(name).and_then(Device::gpu).map(Adapter::of);
         let assets = &loaded.assets.file_hashes;
         let mut hash = Hash64::default();
         hash.word(self.program);
@@ -235,6 +264,12 @@ pub(super) mod tests {
             assert!(method(name).is_some(), "{name}");
         }
         assert_eq!(quick_methods().len() + NOT_QUICK.len(), METHODS.len());
+        for name in QUICK_ON_DEVICE {
+            assert!(
+                quick_methods().iter().any(|method| method.name == name),
+                "{name}"
+            );
+        }
     }
 
     #[test]

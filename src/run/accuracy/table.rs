@@ -196,7 +196,7 @@ fn write_split(summary: &[MethodSummary], out: &mut impl Write) -> io::Result<()
          cpu engine, precision the cpu engine in `f32` against `f64`, and the method's own error that \
          of `f64` against the reference. The three do not add up to the whole error: they are lengths \
          of differences that may point anywhere. An empty rounding: the passes of the device do not \
-         know the method, or there is no adapter.\n\n\
+         know the method, the quick form leaves it out, or there is no adapter.\n\n\
          | method | rounding (gpu − cpu) | precision (f32 − f64) | method (f64 − reference) |\n\
          |---|---|---|---|"
     )?;
