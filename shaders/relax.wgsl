@@ -146,7 +146,7 @@ fn meet_part(
 fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, laying: bool) -> bool {
     let parts = tile.end_contact - tile.first_contact;
     // A segment that is laid out asks all parts, and then again those it has not asked since one turned it.
-    let looks = parts * select(1u, LOOKS, laying);
+    let looks = parts * select(1u, LOOKS, laying && parts > 1u);
     var pushed = false;
     var posed = NO_FACE;
     var pose: Pose;
