@@ -24,7 +24,10 @@ const MOST_LOOPS: u64 = 30_000;
 /// as a round.
 const CUBE_LOOPS: u64 = 7 + 6 * 5;
 /// Loops of the test that a part does not take: lanes that are masked off go once around each.
-const OTHER_LOOPS: u64 = 4;
+const OTHER_LOOPS: u64 = 6;
+/// Loops of the look at a body's other parts where it has none: its only part, the check that ends it, and
+/// the test inside, which is masked off.
+const LONE_LOOPS: u64 = 3;
 /// Loops over the segments in a round of relax, besides those that meet bodies.
 const LOOPS_OVER_SEGMENTS: u64 = 3;
 
@@ -118,7 +121,7 @@ fn exit_loops(meadow: &Meadow, contacts: &[Contact]) -> u64 {
         let others: u64 = body.iter().map(|other| 2 + features(meadow, other)).sum();
         let covered = match contact.tested {
             Tested::Cube => 0,
-            _ if body.len() == 1 => 1,
+            _ if body.len() == 1 => features(meadow, contact) * LONE_LOOPS,
             _ => features(meadow, contact) * (1 + others),
         };
         test_loops(meadow, contact) + covered
