@@ -154,7 +154,11 @@ fn a_malformed_recording_is_an_error_with_its_key() {
             ": format: ",
             "format 1",
         ),
-        (text.replace("format: 1,", ""), "`format`", "is no recording"),
+        (
+            text.replace("format: 1,", ""),
+            "`format`",
+            "is no recording",
+        ),
         (text.replace("hz: 47.0", "hz: NaN"), ": hz: ", "1 to 10000"),
         (
             text.replace("hz: 47.0", "hz: 47.0, colour: 3"),
