@@ -7,7 +7,7 @@ use crate::field::blade_shape::ShapeError;
 use crate::gpu::GpuError;
 use crate::render::RenderError;
 use crate::run::accuracy::{AccuracyError, PlotError};
-use crate::run::bench::{SubmissionError, TerrainBenchError};
+use crate::run::bench::{DrawBenchError, TerrainBenchError};
 use crate::run::{Exit, RunError, StageError};
 use crate::scene::SceneError;
 
@@ -133,11 +133,11 @@ impl From<TerrainBenchError> for Failure {
     }
 }
 
-impl From<SubmissionError> for Failure {
-    fn from(error: SubmissionError) -> Self {
+impl From<DrawBenchError> for Failure {
+    fn from(error: DrawBenchError) -> Self {
         match error {
-            SubmissionError::Gpu(error) => error.into(),
-            SubmissionError::Render(error) => error.into(),
+            DrawBenchError::Gpu(error) => error.into(),
+            DrawBenchError::Render(error) => error.into(),
             other => Self::Internal(other.to_string()),
         }
     }

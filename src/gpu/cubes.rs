@@ -8,7 +8,7 @@ use super::tick_data::{CubeJob, PartRecord, SolidRecord};
 use super::{Buffer, Gpu, GpuError};
 use crate::base::Vec3;
 use crate::scene::method::{Push, Sampling};
-use crate::sim::depth_cube::{COVER_MARGIN_M, DepthCube};
+use crate::sim::depth_cube::{DepthCube, cover_m};
 use crate::sim::parts::Parts;
 
 /// Buffers that hold every part and its depth cube; they live as long as the scene.
@@ -118,8 +118,7 @@ impl Cubes {
                 self.cubes += 1;
                 jobs.push(CubeJob {
                     part: index as u32,
-                    // Siblings are known grown by the skin only; depth grows by as much.
-                    cover_m: (COVER_MARGIN_M + self.skin_m) as f32,
+                    cover_m: cover_m(self.skin_m),
                 });
             }
         }

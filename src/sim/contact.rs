@@ -48,8 +48,8 @@ impl<'a, R: Real> Moment<'a, R> {
 
     /// True where a point of the anchor's space is in another part of a touch's body.
     fn is_covered(&self, touch: &Touch<R>, p: Vec3<R>) -> bool {
-        let others = touch.body.clone().filter(|&n| n != touch.number);
-        others.into_iter().any(|n| {
+        let mut others = touch.body.clone().filter(|&n| n != touch.number);
+        others.any(|n| {
             let other = &self.touches[n];
             other.grown.depth(self.pose_of(other).inverse_point(p)) > self.cover_m
         })

@@ -39,6 +39,12 @@ pub const DEPTH_STEPS: f64 = 536_870_912.0;
 /// A surface point this deep inside a neighbouring part is hidden, in metres: faces that merely
 /// meet do not hide each other.
 pub const COVER_MARGIN_M: f64 = 1e-4;
+
+/// The same for parts that are known grown by a skin only, whose depth grows by as much.
+pub fn cover_m(skin_m: f64) -> f32 {
+    (COVER_MARGIN_M + skin_m) as f32
+}
+
 /// A surface is hidden where more than this share of its texels is. One that is hidden in part borders on
 /// the inner corner of a body: to take it for hidden would leave a node in the corner without a way out,
 /// to take it for open costs it a texel at most, out of which the neighbour pushes it.

@@ -23,7 +23,7 @@ use crate::scene::method::{Collide, Springs};
 use crate::terrain::HeightGrid;
 
 use super::contact::{Laid, Moment, Touch};
-use super::depth_cube::COVER_MARGIN_M;
+use super::depth_cube::cover_m;
 use super::fault::{Fault, Planted};
 use super::solid::Exit;
 use super::springs::{LiteralBlade, relax_blade};
@@ -66,7 +66,7 @@ impl<R: Real> RelaxSettings<R> {
             most_rounds: solver.rounds[1],
             strain_limit: R::of_f32(solver.strain_limit),
             until_clear: solver.method.collide == Collide::Exact,
-            cover_m: R::of_f32((COVER_MARGIN_M + f64::from(solver.skin_m)) as f32),
+            cover_m: R::of_f32(cover_m(f64::from(solver.skin_m))),
             planted: Planted::default(),
         }
     }

@@ -4,12 +4,14 @@ pub mod flight;
 pub mod machine;
 pub mod popping;
 mod rig;
+mod still_field;
 pub mod submission;
 pub mod terrain;
 pub mod tiles;
 
 pub use machine::Machine;
 pub use popping::{PoppingBench, bench_popping};
-pub use submission::{SubmissionBench, SubmissionError, bench_submission};
+pub use still_field::DrawBenchError;
+pub use submission::{SubmissionBench, bench_submission};
 pub use terrain::{TerrainBench, TerrainBenchError, bench_terrain};
 pub use tiles::{TilesBench, bench_tiles};

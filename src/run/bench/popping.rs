@@ -14,18 +14,15 @@
 use serde::Serialize;
 
 use super::machine::Machine;
-use super::submission::SubmissionError;
+use super::still_field::{DrawBenchError, StillField};
 use super::tiles::Limit;
 use crate::base::Vec3;
-use crate::field::{Field, WindNow};
-use crate::gpu::{Buffer, Gpu, PassTimer};
-use crate::render::{
-    BladeDetail, BladesInput, Exposure, FrameInput, GroundLook, Picture, PictureTarget, Renderer,
-    Sun, Transition, View,
-};
+use crate::field::WindNow;
+use crate::gpu::Gpu;
+use crate::render::{BladeDetail, Picture, PictureTarget, Transition, View};
 use crate::run::report::Adapter;
-use crate::scene::{Grass, Ground, Solver, Terrain};
-use crate::terrain::{ColourMap, HeightGrid};
+use crate::scene::{Ground, Terrain};
+use crate::terrain::HeightGrid;
 
 /// Field along x and z, in metres.
 const FIELD_M: [f32; 2] = [9.0, 15.0];
@@ -88,7 +85,7 @@ impl PoppingBench {
 pub fn bench_popping(
     gpu: &Gpu,
     mut progress: impl FnMut(f64),
-) -> Result<PoppingBench, SubmissionError> {
+) -> Result<PoppingBench, DrawBenchError> {
     let machine = Machine::now();
     let mut rig = Rig::new(gpu)?;
     let near = BladeDetail {
@@ -152,17 +149,14 @@ enum Compared {
     PlantsBefore,
 }
 
-/// A field with its renderer.
+/// A field and the picture that it is drawn into.
 struct Rig {
-    field: Field,
-    nodes: Buffer<[f32; 4]>,
-    renderer: Renderer,
+    still: StillField,
     target: PictureTarget,
-    timer: PassTimer,
 }
 
 impl Rig {
-    fn new(gpu: &Gpu) -> Result<Self, SubmissionError> {
+    fn new(gpu: &Gpu) -> Result<Self, DrawBenchError> {
         let terrain = Terrain {
             ground: Ground::Flat {
                 size_m: FIELD_M,
@@ -172,19 +166,10 @@ impl Rig {
         };
         let [columns, rows] = FIELD_M.map(|side| side as u32 + 1);
         let ground = HeightGrid::flat(columns, rows, 1.0);
-        let field = Field::new(ground, &Grass::default(), &Solver::default())?;
-        let mut renderer = Renderer::new(gpu, PictureTarget::FORMAT, PICTURE)?;
-        let look = GroundLook {
-            map: &ColourMap::of_patches(&terrain, &field.ground),
-            soil_rgb: terrain.soil_rgb,
-        };
-        renderer.set_scene(gpu, &field, &look, &[])?;
+        let wind = WindNow::default();
         Ok(Self {
-            nodes: Buffer::new(gpu, "no nodes", 1, wgpu::BufferUsages::STORAGE)?,
+            still: StillField::new(gpu, &terrain, ground, wind, PICTURE)?,
             target: PictureTarget::new(gpu, PICTURE)?,
-            timer: PassTimer::new(gpu, 16),
-            field,
-            renderer,
         })
     }
 
@@ -195,7 +180,7 @@ impl Rig {
         detail: BladeDetail,
         compared: Compared,
         mut progress: impl FnMut(f64),
-    ) -> Result<[f64; SQUARES_PX.len()], SubmissionError> {
+    ) -> Result<[f64; SQUARES_PX.len()], DrawBenchError> {
         let mut sums = [0.0; SQUARES_PX.len()];
         let mut last = self.shoot(gpu, [0, 0], detail)?;
         for frame in 1..FRAMES {
@@ -218,30 +203,15 @@ impl Rig {
         gpu: &Gpu,
         [seen, judged]: [u32; 2],
         detail: BladeDetail,
-    ) -> Result<Picture, SubmissionError> {
+    ) -> Result<Picture, DrawBenchError> {
         let eye = eye_at(seen);
         let detail = BladeDetail {
             judged_from: Some(eye_at(judged)),
             ..detail
         };
         let view = View::look_at(eye, eye + Vec3::new(0.0, -0.28, -1.0), 45.0);
-        let input = FrameInput {
-            view: &view,
-            sun: Sun::default(),
-            exposure: Exposure::default(),
-            bodies: &[],
-            blades: Some(BladesInput {
-                field: &self.field,
-                wind: &WindNow::default(),
-                active: &[],
-                active_nodes: &self.nodes,
-                detail,
-            }),
-            marks: &[],
-            time_s: 0.0,
-        };
-        self.renderer
-            .draw(gpu, &input, &self.target.view, &mut self.timer)?;
+        let (renderer, timer, input) = self.still.frame(&view, detail);
+        renderer.draw(gpu, &input, &self.target.view, timer)?;
         Ok(self.target.read(gpu)?)
     }
 }

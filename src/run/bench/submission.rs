@@ -11,18 +11,16 @@ use serde::Serialize;
 
 use super::flight::{FRAMES_PER_S, flight_view};
 use super::machine::Machine;
+use super::still_field::{DrawBenchError, StillField};
 use super::terrain::hills;
 use crate::base::statistics::median;
-use crate::field::{Field, FieldError, WindNow};
-use crate::gpu::{Buffer, Gpu, GpuError, PassTimer};
-use crate::render::{
-    BladeDetail, BladesInput, Count, Exposure, FrameInput, GroundLook, PictureTarget, RenderError,
-    Renderer, Submission, Sun,
-};
+use crate::field::WindNow;
+use crate::gpu::Gpu;
+use crate::render::{BladeDetail, Count, Submission};
 use crate::run::report::Adapter;
+use crate::scene::Wind;
 use crate::scene::assets::Assets;
-use crate::scene::{Grass, Solver, Wind};
-use crate::terrain::{ColourMap, TerrainError, height_grid};
+use crate::terrain::height_grid;
 
 /// Side of the terrain, in metres.
 const SIDE_M: f32 = 1000.0;
@@ -68,19 +66,6 @@ pub struct SubmissionRow {
     pub triangle_error_most: f64,
 }
 
-/// Why the bench cannot run.
-#[derive(Debug, thiserror::Error)]
-pub enum SubmissionError {
-    #[error(transparent)]
-    Terrain(#[from] TerrainError),
-    #[error(transparent)]
-    Field(#[from] FieldError),
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    #[error(transparent)]
-    Render(#[from] RenderError),
-}
-
 /// Runs the bench; `progress` gets the share done.
 ///
 /// # Errors
@@ -89,7 +74,7 @@ pub enum SubmissionError {
 pub fn bench_submission(
     gpu: &Gpu,
     mut progress: impl FnMut(f64),
-) -> Result<SubmissionBench, SubmissionError> {
+) -> Result<SubmissionBench, DrawBenchError> {
     let machine = Machine::now();
     let mut rig = Rig::new(gpu)?;
     let rules = [
@@ -115,36 +100,18 @@ pub fn bench_submission(
     })
 }
 
-/// A field with its renderer.
-struct Rig {
-    field: Field,
-    wind: WindNow,
-    nodes: Buffer<[f32; 4]>,
-    renderer: Renderer,
-    timer: PassTimer,
-}
+/// The field of the flight.
+struct Rig(StillField);
 
 /// The two ways of one view or of all.
 const WAYS: [(&str, Submission); 2] = [("exact", Submission::Exact), ("bins", Submission::Bins)];
 
 impl Rig {
-    fn new(gpu: &Gpu) -> Result<Self, SubmissionError> {
+    fn new(gpu: &Gpu) -> Result<Self, DrawBenchError> {
         let terrain = hills(SIDE_M);
         let ground = height_grid(&terrain, &Assets::default())?;
-        let field = Field::new(ground, &Grass::default(), &Solver::default())?;
-        let mut renderer = Renderer::new(gpu, PictureTarget::FORMAT, PICTURE)?;
-        let look = GroundLook {
-            map: &ColourMap::of_patches(&terrain, &field.ground),
-            soil_rgb: terrain.soil_rgb,
-        };
-        renderer.set_scene(gpu, &field, &look, &[])?;
-        Ok(Self {
-            wind: WindNow::at(&Wind::default(), 0.0, 1.0, 1.0),
-            nodes: Buffer::new(gpu, "no nodes", 1, wgpu::BufferUsages::STORAGE)?,
-            timer: PassTimer::new(gpu, 16),
-            field,
-            renderer,
-        })
+        let wind = WindNow::at(&Wind::default(), 0.0, 1.0, 1.0);
+        Ok(Self(StillField::new(gpu, &terrain, ground, wind, PICTURE)?))
     }
 
     /// Both ways of submitting by one rule.
@@ -154,7 +121,7 @@ impl Rig {
         rule: &'static str,
         count: Count,
         mut progress: impl FnMut(f64),
-    ) -> Result<[SubmissionRow; 2], SubmissionError> {
+    ) -> Result<[SubmissionRow; 2], DrawBenchError> {
         let mut sums = WAYS.map(|_| Sum::default());
         for (done, second) in SECONDS.into_iter().enumerate() {
             let mut times_ms = WAYS.map(|_| Vec::new());
@@ -163,14 +130,14 @@ impl Rig {
                 for (way, (_, submission)) in WAYS.into_iter().enumerate() {
                     self.prepare(gpu, second, count, submission)?;
                     let started = Instant::now();
-                    self.renderer.sort_plants(gpu, &mut self.timer)?;
+                    self.0.renderer.sort_plants(gpu, &mut self.0.timer)?;
                     gpu.wait()?;
                     if round > 0 {
                         times_ms[way].push(started.elapsed().as_secs_f64() * 1e3);
                         continue;
                     }
-                    let seeded = self.renderer.seeded_triangles(gpu)?;
-                    let drawn = self.renderer.drawn_plants(gpu)?;
+                    let seeded = self.0.renderer.seeded_triangles(gpu)?;
+                    let drawn = self.0.renderer.drawn_plants(gpu)?;
                     sums[way].plants += drawn.iter().map(|form| form.plants as f64).sum::<f64>();
                     sums[way].places += seeded.places as f64;
                     if way == 0 {
@@ -193,28 +160,15 @@ impl Rig {
         second: u32,
         count: Count,
         submission: Submission,
-    ) -> Result<(), SubmissionError> {
-        let view = flight_view(&self.field.ground, second * FRAMES_PER_S);
-        let input = FrameInput {
-            view: &view,
-            sun: Sun::default(),
-            exposure: Exposure::default(),
-            bodies: &[],
-            blades: Some(BladesInput {
-                field: &self.field,
-                wind: &self.wind,
-                active: &[],
-                active_nodes: &self.nodes,
-                detail: BladeDetail {
-                    count,
-                    submission,
-                    ..BladeDetail::default()
-                },
-            }),
-            marks: &[],
-            time_s: 0.0,
+    ) -> Result<(), DrawBenchError> {
+        let view = flight_view(&self.0.field.ground, second * FRAMES_PER_S);
+        let detail = BladeDetail {
+            count,
+            submission,
+            ..BladeDetail::default()
         };
-        Ok(self.renderer.prepare(gpu, &input)?)
+        let (renderer, _, input) = self.0.frame(&view, detail);
+        Ok(renderer.prepare(gpu, &input)?)
     }
 }
 

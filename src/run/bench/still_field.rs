@@ -1,0 +1,82 @@
+//! A field at rest with its renderer, for benches of drawing.
+
+use crate::field::{Field, FieldError, WindNow};
+use crate::gpu::{Buffer, Gpu, GpuError, PassTimer};
+use crate::render::{
+    BladeDetail, BladesInput, Exposure, FrameInput, GroundLook, PictureTarget, RenderError,
+    Renderer, Sun, View,
+};
+use crate::scene::{Grass, Solver, Terrain};
+use crate::terrain::{ColourMap, HeightGrid, TerrainError};
+
+/// Why a bench of drawing cannot run.
+#[derive(Debug, thiserror::Error)]
+pub enum DrawBenchError {
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
+    #[error(transparent)]
+    Field(#[from] FieldError),
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+/// The default grass on a ground, with no tile awake.
+pub(super) struct StillField {
+    pub field: Field,
+    pub wind: WindNow,
+    nodes: Buffer<[f32; 4]>,
+    pub renderer: Renderer,
+    pub timer: PassTimer,
+}
+
+impl StillField {
+    /// `picture` is the size of what is drawn, in pixels.
+    pub fn new(
+        gpu: &Gpu,
+        terrain: &Terrain,
+        ground: HeightGrid,
+        wind: WindNow,
+        picture: [u32; 2],
+    ) -> Result<Self, DrawBenchError> {
+        let field = Field::new(ground, &Grass::default(), &Solver::default())?;
+        let mut renderer = Renderer::new(gpu, PictureTarget::FORMAT, picture)?;
+        let look = GroundLook {
+            map: &ColourMap::of_patches(terrain, &field.ground),
+            soil_rgb: terrain.soil_rgb,
+        };
+        renderer.set_scene(gpu, &field, &look, &[])?;
+        Ok(Self {
+            wind,
+            nodes: Buffer::new(gpu, "no nodes", 1, wgpu::BufferUsages::STORAGE)?,
+            timer: PassTimer::new(gpu, 16),
+            field,
+            renderer,
+        })
+    }
+
+    /// The renderer and its timer, and a frame of the plants alone.
+    pub fn frame<'a>(
+        &'a mut self,
+        view: &'a View,
+        detail: BladeDetail,
+    ) -> (&'a mut Renderer, &'a mut PassTimer, FrameInput<'a>) {
+        let input = FrameInput {
+            view,
+            sun: Sun::default(),
+            exposure: Exposure::default(),
+            bodies: &[],
+            blades: Some(BladesInput {
+                field: &self.field,
+                wind: &self.wind,
+                active: &[],
+                active_nodes: &self.nodes,
+                detail,
+            }),
+            marks: &[],
+            time_s: 0.0,
+        };
+        (&mut self.renderer, &mut self.timer, input)
+    }
+}
