@@ -43,6 +43,20 @@ fn node_held(tile: TileRecord, plant: Plant, node: vec3f) -> bool {
     return false;
 }
 
+// True where the plant would recover into a part within this sub-step if it were let go.
+fn is_in_the_way(tile: TileRecord, plant: Plant, row: u32) -> bool {
+    var walk = walk_from_root(tile, plant, state[row].x);
+    for (var j = 0u; j < field.segments; j++) {
+        walk_up(&walk, plant, j, bitcast<vec3f>(state[row + 1u + j].xyz));
+        for (var contact = tile.first_contact; contact < tile.end_contact; contact++) {
+            if reaches(contact, plant.root, plant.height_m) && will_hold(contact, walk.node) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 // True where a node lies on the ground, so that pushing would only shuffle it.
 fn is_pinned(tile: TileRecord, node: vec3f) -> bool {
     return node.y - ground_in_anchor(tile, node.x, node.z) <= PINNED_M;
@@ -84,8 +98,11 @@ fn collide(
         held = held || (walk.before && node_held(tile, plant, walk.node));
     }
     tell_if_cut_short(field.segments);
+    if done + tick.collide_sweeps < sweeps {
+        return;
+    }
     // Held where it was pushed before: it keeps its pose and does not recover yet.
-    if held && done + tick.collide_sweeps >= sweeps {
+    if held || (walk.before && is_in_the_way(tile, plant, row)) {
         add_touched(Touched(group.y, place, 0u));
     }
 }

@@ -1,19 +1,19 @@
-// How many places every seeding triangle in view gets, and where in the list of all places they lie:
-// P15 section 3.2. Hosts: src/render/seed_triangles.rs, src/render/sort_plants.rs.
+// How many clusters every seeding triangle in view gets, and where in the list of all clusters they
+// lie: P15 section 3.2. Hosts: src/render/seed_triangles.rs, src/render/sort_plants.rs.
 //
-// Exactly: every triangle has the places that its count says, and prefix sums over the triangles tell
+// Exactly: every triangle has the clusters that its count fills, and prefix sums over the triangles tell
 // where they begin. By bins: triangles of similar counts are put together and all get their bin's
-// (eq. 15), so that a place's triangle follows from a division. Deviation: the batches of all bins are
+// (eq. 15), so that a cluster's triangle follows from a division. Deviation: the batches of all bins are
 // one dispatch, one after the other, where P15 submits each by itself.
 #import "shared/count.wgsl"
 #import "shared/drawn_tile.wgsl"
 #import "shared/sorting.wgsl"
 
-// Of every triangle: its count as a float's bits, then either the places before its own in its group
+// Of every triangle: its count as a float's bits, then either the clusters before its own in its group
 // of WORKGROUP triangles, or its bin and, above it, its rank in the bin within the group.
 @group(1) @binding(1) var<storage, read> drawn_tiles: array<DrawnTile>;
 @group(1) @binding(2) var<storage, read_write> triangles: array<vec2u>;
-// Exactly: places of each group. By bins: triangles of each bin and group, bin by bin. Then sums of
+// Exactly: clusters of each group. By bins: triangles of each bin and group, bin by bin. Then sums of
 // those of earlier groups.
 @group(1) @binding(3) var<storage, read_write> rows: array<u32>;
 @group(1) @binding(4) var<storage, read_write> totals: array<u32>;
@@ -26,7 +26,7 @@ var<workgroup> numbers: array<u32, WORKGROUP>;
 // The count of a triangle: its own, or its bin's.
 struct Counted {
     count: f32,
-    places: u32,
+    clusters: u32,
     bin: u32,
 }
 
@@ -72,7 +72,7 @@ fn counted(number: u32) -> Counted {
         bin = nearest_bin(count);
         count = select(bin_centre(bin), count, count < 1.0);
     }
-    return Counted(count, places_of(count, rounding), bin);
+    return Counted(count, clusters_in(places_of(count, rounding)), bin);
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -83,7 +83,7 @@ fn count_triangles(
     let at = group.y * sorting.triangle_groups_wide + group.x;
     let number = at * WORKGROUP + local;
     let own = counted(number);
-    numbers[local] = select(own.places, own.bin, sorting.by_bins == 1u);
+    numbers[local] = select(own.clusters, own.bin, sorting.by_bins == 1u);
     workgroupBarrier();
     if at >= sorting.triangle_groups {
         return;
@@ -108,7 +108,7 @@ fn count_triangles(
     }
     triangles[number] = vec2u(bitcast<u32>(own.count), before);
     if local == WORKGROUP - 1u {
-        rows[at] = before + own.places;
+        rows[at] = before + own.clusters;
     }
 }
 
@@ -135,26 +135,26 @@ fn order_triangles(
     order[first + rows[bin * sorting.triangle_groups + at] + (word >> 8u)] = number;
 }
 
-// How long the list of places is, and the groups that the later kernels take.
+// How long the list of clusters is, and the groups that the later kernels take.
 @compute @workgroup_size(1)
 fn size_list() {
-    var places = totals[0];
+    var clusters = totals[0];
     if sorting.by_bins == 1u {
-        places = 0u;
+        clusters = 0u;
         var first = 0u;
         for (var bin = 0u; bin < BINS; bin++) {
             list[LIST_BIN_TRIANGLES + bin] = first;
             first += totals[bin];
-            places += totals[bin] * places_in_bin(bin);
-            list[LIST_BIN_ENDS + bin] = places;
+            clusters += totals[bin] * clusters_in_bin(bin);
+            list[LIST_BIN_ENDS + bin] = clusters;
         }
     }
     // One job at least writes that there is nothing to draw.
-    let jobs = max((places + WORKGROUP - 1u) / WORKGROUP, 1u);
+    let jobs = max((clusters + WORKGROUP - 1u) / WORKGROUP, 1u);
     let wide = min(jobs, MOST_GROUPS);
     list[LIST_JOBS] = jobs;
     list[LIST_GROUPS] = wide;
     list[LIST_GROUPS + 1u] = (jobs + wide - 1u) / wide;
     list[LIST_GROUPS + 2u] = 1u;
-    list[LIST_PLACES] = places;
+    list[LIST_CLUSTERS] = clusters;
 }

@@ -63,21 +63,29 @@ fn sweeps_for(tile: TileRecord, root: vec3f, reach: f32) -> u32 {
     return most;
 }
 
-// True where a vertex is inside the part at a pose.
+// True where a vertex is inside the part at a pose, and not merely on its surface.
 fn holds(contact: u32, pose: Pose, vertex: vec3f) -> bool {
     let p = inverse_point(pose, vertex);
     if contacts[contact].uses_cube != 0u {
-        return cube_inside(contacts[contact].solid, p);
+        return cube_is_deeper(contacts[contact].solid, p, ON_SURFACE_M);
     }
-    return solid_depth(contacts[contact].solid, p) > 0.0;
+    return solid_depth(contacts[contact].solid, p) > ON_SURFACE_M;
 }
 
 // True where a vertex is inside the part at the end of the sub-step, or so close to it that a plant
 // the body pushed before is still held.
 fn nearly_holds(contact: u32, vertex: vec3f) -> bool {
+    return depth_at_end(contact, vertex) > -contacts[contact].hold_m;
+}
+
+// True where a vertex would be inside the part at the end of the sub-step.
+fn will_hold(contact: u32, vertex: vec3f) -> bool {
+    return depth_at_end(contact, vertex) > ON_SURFACE_M;
+}
+
+fn depth_at_end(contact: u32, vertex: vec3f) -> f32 {
     let pose = Pose(contacts[contact].to_turn, contacts[contact].to_place);
-    let depth = solid_depth(contacts[contact].solid, inverse_point(pose, vertex));
-    return depth > -contacts[contact].hold_m;
+    return solid_depth(contacts[contact].solid, inverse_point(pose, vertex));
 }
 
 // True where a point of the anchor's space is in another part of a contact's body at a share of the

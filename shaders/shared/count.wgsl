@@ -80,12 +80,33 @@ fn places_of(count: f32, rounding: f32) -> u32 {
     return u32(max(ceil(count + rounding) - 1.0, 0.0));
 }
 
+// Clusters of one copy of a triangle's plants: the plants themselves, or one companion of each.
+fn clusters_per_copy() -> u32 {
+    return (plants_per_triangle() + field.cluster - 1u) / field.cluster;
+}
+
+fn plants_per_triangle() -> u32 {
+    return field.plants_per_tile / (2u * field.tile_cells * field.tile_cells);
+}
+
+// Clusters, whole or begun, that hold this many of a triangle's places.
+fn clusters_in(places: u32) -> u32 {
+    let copies = places / plants_per_triangle();
+    let rest = places % plants_per_triangle();
+    return copies * clusters_per_copy() + (rest + field.cluster - 1u) / field.cluster;
+}
+
 // What is added to a count before its fraction is cut off.
 fn count_rounding(triangle: u32) -> f32 {
     return unit(philox2x32(vec2u(triangle, COUNT_WORD), field.key, field.rounds).x);
 }
 
-// How much of plant `index` of a triangle is drawn, 0 to 1.
-fn shown_share(count: f32, rounding: f32, index: u32) -> f32 {
-    return saturate((count + rounding - (f32(index) + 1.0)) / max(0.2 * count, 1.0));
+// How much of plant `index` of a triangle is drawn, 0 to 1: `end` is its count, rounded.
+fn shown_share(end: f32, ramp: f32, index: u32) -> f32 {
+    return saturate((end - (f32(index) + 1.0)) / ramp);
+}
+
+// Plants over which the shares of a prefix's last ones fall to nothing.
+fn ramp_of(count: f32) -> f32 {
+    return max(0.2 * count, 1.0);
 }

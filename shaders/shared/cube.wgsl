@@ -70,14 +70,14 @@ fn within_bounds(solid: SolidRecord, p: vec3f) -> bool {
     return all(p > solid.low) && all(p < solid.high);
 }
 
-// True where a point is behind all six faces.
-fn cube_inside(solid: SolidRecord, p: vec3f) -> bool {
+// True where a point is farther behind all six faces than `depth_m`.
+fn cube_is_deeper(solid: SolidRecord, p: vec3f, depth_m: f32) -> bool {
     if !within_bounds(solid, p) {
         return false;
     }
     for (var face = 0u; face < 6u; face++) {
         let sample = cube_sample(solid, p, face);
-        if !sample.hit || sample.behind <= 0.0 {
+        if !sample.hit || sample.behind <= depth_m {
             return false;
         }
     }
@@ -98,5 +98,16 @@ fn cube_exit(solid: SolidRecord, p: vec3f, kept: u32, reach: Reach) -> Exit {
         let exit = Exit(sample.behind, sample.normal, face);
         offer(&choice, p, kept, reach, exit, sample.hidden);
     }
-    return take(choice);
+    return nearer(solid, p, take(choice));
+}
+
+// The way out to the surface where `exit` ends, if that is shorter.
+fn nearer(solid: SolidRecord, p: vec3f, exit: Exit) -> Exit {
+    let way = exit.normal * exit.depth;
+    let sample = cube_sample(solid, p + way, exit.face);
+    let depth = sample.behind + dot(sample.normal, way);
+    if !sample.hit || sample.hidden || depth <= 0.0 || depth >= exit.depth {
+        return exit;
+    }
+    return Exit(depth, sample.normal, exit.face);
 }

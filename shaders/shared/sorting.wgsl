@@ -30,9 +30,9 @@ fn bin_centre(bin: u32) -> f32 {
     return sorting.bins[bin >> 2u][bin & 3u];
 }
 
-// Places of every triangle of a bin.
-fn places_in_bin(bin: u32) -> u32 {
-    return u32(ceil(bin_centre(bin)));
+// Clusters of every triangle of a bin.
+fn clusters_in_bin(bin: u32) -> u32 {
+    return clusters_in(u32(ceil(bin_centre(bin))));
 }
 
 fn triangles_per_tile() -> u32 {

@@ -7,8 +7,11 @@ use crate::field::blade_shape::ShapeError;
 use crate::gpu::GpuError;
 use crate::render::RenderError;
 use crate::run::accuracy::{AccuracyError, PlotError};
+use crate::run::bench::flight::experiment::FlightError;
+use crate::run::bench::flight::plot::FlightPlotError;
 use crate::run::bench::{DrawBenchError, TerrainBenchError};
 use crate::run::{Exit, RunError, StageError};
+use crate::scene::AssetError;
 use crate::scene::SceneError;
 
 /// An error that ends a command. Printed once, by the program's main function.
@@ -22,6 +25,9 @@ pub enum Failure {
     /// A scene that is nowhere, with the names that there are.
     #[error("{0}")]
     UnknownScene(String),
+    /// A ground of a bench that cannot be used, in words.
+    #[error("{0}")]
+    BadGround(String),
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error(transparent)]
@@ -48,7 +54,7 @@ impl Failure {
     pub fn exit(&self) -> Exit {
         match self {
             Self::Usage(_) => Exit::Usage,
-            Self::Scene(_) | Self::UnknownScene(_) => Exit::Invalid,
+            Self::Scene(_) | Self::UnknownScene(_) | Self::BadGround(_) => Exit::Invalid,
             Self::Run(error) => exit_of_run(error),
             Self::Stage(error) => exit_of_stage(error),
             Self::Gpu(error) => exit_of_gpu(error),
@@ -108,9 +114,9 @@ impl From<AccuracyError> for Failure {
         match error {
             AccuracyError::Run(error) => Self::Run(error),
             // Not stdout: the error says itself what could not be written.
-            error @ (AccuracyError::Store(_) | AccuracyError::Blades(_)) => {
-                Self::Internal(error.to_string())
-            }
+            error @ (AccuracyError::Store(_)
+            | AccuracyError::Blades(_)
+            | AccuracyError::Scene(_)) => Self::Internal(error.to_string()),
         }
     }
 }
@@ -129,6 +135,29 @@ impl From<RenderError> for Failure {
 
 impl From<TerrainBenchError> for Failure {
     fn from(error: TerrainBenchError) -> Self {
+        Self::Internal(error.to_string())
+    }
+}
+
+impl From<AssetError> for Failure {
+    fn from(error: AssetError) -> Self {
+        Self::BadGround(error.to_string())
+    }
+}
+
+impl From<FlightError> for Failure {
+    fn from(error: FlightError) -> Self {
+        match error {
+            FlightError::Draw(DrawBenchError::Terrain(error)) => Self::BadGround(error.to_string()),
+            FlightError::Draw(DrawBenchError::Field(error)) => Self::BadGround(error.to_string()),
+            FlightError::Draw(error) => error.into(),
+            FlightError::Terrain(error) => error.into(),
+        }
+    }
+}
+
+impl From<FlightPlotError> for Failure {
+    fn from(error: FlightPlotError) -> Self {
         Self::Internal(error.to_string())
     }
 }

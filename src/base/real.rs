@@ -24,6 +24,8 @@ pub trait Real:
 {
     const ZERO: Self;
     const ONE: Self;
+    /// Distance from 1 to the next float.
+    const EPSILON: Self;
 
     /// Rounds a constant or a stored `f64` to this float.
     fn of(value: f64) -> Self;
@@ -48,6 +50,7 @@ macro_rules! real {
         impl Real for $float {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
+            const EPSILON: Self = <$float>::EPSILON;
 
             fn of(value: f64) -> Self {
                 value as $float

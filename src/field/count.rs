@@ -82,6 +82,14 @@ pub fn places(count: f32, rounding: f32) -> u32 {
     ((count + rounding).ceil() as u32).saturating_sub(1)
 }
 
+/// Clusters, whole or begun, of `cluster` seeds each that hold the first `places` of a triangle: first of
+/// its plants, then of copies of them, their companions.
+pub fn clusters_in(places: u32, plants_per_triangle: u32, cluster: u32) -> u32 {
+    let per_triangle = plants_per_triangle.max(1);
+    let [copies, rest] = [places / per_triangle, places % per_triangle];
+    copies * per_triangle.div_ceil(cluster) + rest.div_ceil(cluster)
+}
+
 /// Bins of P15 section 3.2.
 pub const BINS: usize = 32;
 
@@ -208,6 +216,18 @@ mod tests {
                 let seen = (0..100).filter(|&i| shown(count, part, i) > 0.0).count();
                 assert_eq!(places(count, part), seen as u32, "{count} + {part}");
                 assert!(places(count, part) <= count.ceil() as u32);
+            }
+        }
+    }
+
+    /// One more place begins a cluster where a copy of the plants or a cluster of it begins.
+    #[test]
+    fn clusters_hold_all_places() {
+        for (per_triangle, cluster) in [(1, 1), (8, 8), (8, 3), (21, 8), (5, 16)] {
+            let mut clusters = 0;
+            for place in 0..100 {
+                assert_eq!(clusters_in(place, per_triangle, cluster), clusters);
+                clusters += u32::from(place % per_triangle % cluster == 0);
             }
         }
     }

@@ -25,6 +25,8 @@ const MOST_LOOPS: u64 = 30_000;
 const CUBE_LOOPS: u64 = 7 + 6 * 5;
 /// Loops of the test that a part does not take: lanes that are masked off go once around each.
 const OTHER_LOOPS: u64 = 6;
+/// Loops of the second look at a depth cube, where a way out ends; once around for a part without one.
+const NEARER_LOOPS: u64 = 5;
 /// Loops of the look at a body's other parts where it has none: its only part, the check that ends it, and
 /// the test inside, which is masked off.
 const LONE_LOOPS: u64 = 3;
@@ -124,7 +126,7 @@ fn exit_loops(meadow: &Meadow, contacts: &[Contact]) -> u64 {
             _ if body.len() == 1 => features(meadow, contact) * LONE_LOOPS,
             _ => features(meadow, contact) * (1 + others),
         };
-        test_loops(meadow, contact) + covered
+        test_loops(meadow, contact) + NEARER_LOOPS + covered
     };
     let looks = if contacts.len() > 1 { LOOKS } else { 1 };
     let once: u64 = contacts.iter().enumerate().map(of_part).sum();

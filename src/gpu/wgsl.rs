@@ -20,7 +20,7 @@ use crate::field::plant::{CELL_STEPS, MAX_SPECIES};
 use crate::field::pose::{MAX_NODES, MAX_SEGMENTS};
 use crate::field::wind::WAVES;
 use crate::sim::collide::PINNED_M;
-use crate::sim::contact::FACE_MASK;
+use crate::sim::contact::{FACE_MASK, ON_SURFACE_M};
 use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIDDEN_SHARE, HIT, LEAST_WEIGHT};
 use crate::sim::recover::ASIDE;
 use crate::sim::relax::{LOOKS, ON_GROUND_M, SPRING_TRIES, STICKS};
@@ -118,7 +118,7 @@ macro_rules! wgsl_file {
 /// Files that any layer's shaders may import.
 pub const SHARED: &[WgslFile] = &[
     wgsl_file!("shared/clusters.wgsl", CLUSTER_WORD, GRID_WORD),
-    wgsl_file!("shared/contact.wgsl", FACE_MASK, NO_FACE),
+    wgsl_file!("shared/contact.wgsl", FACE_MASK, NO_FACE, ON_SURFACE_M),
     wgsl_file!(
         "shared/cube.wgsl",
         HIDDEN,

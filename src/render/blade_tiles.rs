@@ -8,6 +8,7 @@
 use crate::base::Vec3;
 use crate::field::TileId;
 use crate::field::count::Bins;
+use crate::gpu::Gpu;
 use crate::gpu::field_data::TileRecord;
 use crate::gpu_struct;
 
@@ -92,6 +93,15 @@ impl BladeDetail {
             reach_m: 50.0,
             tuft: 3,
             ..Self::default()
+        }
+    }
+
+    /// What an adapter can draw in a moment.
+    pub fn of_device(gpu: &Gpu) -> Self {
+        if gpu.adapter.is_software {
+            Self::software()
+        } else {
+            Self::default()
         }
     }
 

@@ -16,7 +16,8 @@ use super::plants::{BladeCounts, BladesInput, DrawnPlants, PlantsLayer};
 use super::seed_triangles::SeededTriangles;
 use super::shadow::{ShadowFit, ShadowMap};
 use super::sky::{SkyLayer, Sun};
-use super::targets::{Targets, most_samples};
+use super::sort_plants::SeededClusters;
+use super::targets::{Targets, most_samples, picture_bytes};
 use super::terrain::TerrainLayer;
 use super::tonemap::{Exposure, TonemapLayer};
 use super::view_group::{Frame, ViewGroups};
@@ -220,6 +221,20 @@ impl Renderer {
     /// The device's.
     pub fn seeded_triangles(&self, gpu: &Gpu) -> Result<SeededTriangles, RenderError> {
         Ok(self.plants.read_triangles(gpu)?)
+    }
+
+    /// What the last frame's first stage made of its clusters, read back from the device: for tests and
+    /// benches, since it waits.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn seeded_clusters(&self, gpu: &Gpu) -> Result<SeededClusters, RenderError> {
+        Ok(self.plants.read_clusters(gpu)?)
+    }
+
+    /// Bytes of the picture's textures on the device.
+    pub fn picture_bytes(&self) -> u64 {
+        picture_bytes(self.targets.size, self.samples)
     }
 
     /// Writes what the layers need for this frame.

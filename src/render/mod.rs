@@ -47,6 +47,7 @@ pub use picture::{Animation, Picture, PictureTarget};
 pub use plants::{BladeCounts, BladesInput, DrawnPlants};
 pub use seed_triangles::SeededTriangles;
 pub use sky::{Daylight, Sun};
+pub use sort_plants::SeededClusters;
 pub use tonemap::Exposure;
 
 use crate::field::count::{BINS, COUNT_WORD, NEAR_M};
@@ -63,9 +64,11 @@ use blades::{TUFT_RADIUS_M, TUFT_TURNS};
 use ground_look::{LOOK_BARE, LOOK_GRASS, LOOK_GRAVEL, LOOK_LITTER, TASTE_ROWS};
 use plant_form::{BUCKET_VERTICES, BUCKETS, DETAILS, FORM_BLADE, FORM_COUNT};
 use seed_triangles::{
-    LIST_BIN_ENDS, LIST_BIN_TRIANGLES, LIST_GROUPS, LIST_JOBS, LIST_PLACES, NO_BIN,
+    LIST_BIN_ENDS, LIST_BIN_TRIANGLES, LIST_CLUSTERS, LIST_GROUPS, LIST_JOBS, NO_BIN,
 };
-use sort_plants::{COUNT_BY_DISTANCE, COUNT_BY_PROJECTED_AREA, LEAST_GROWN, NO_BUCKET};
+use sort_plants::{
+    BARE_BUCKET, COUNT_BY_DISTANCE, COUNT_BY_PROJECTED_AREA, LEAST_GROWN, NO_BUCKET,
+};
 use terrain::{CHUNK_SAMPLES, LAND_RINGS_M};
 
 /// Format in which light is added up before it is shown.
@@ -104,7 +107,7 @@ pub const SHADERS: &[WgslFile] = &[
         LIST_BIN_TRIANGLES,
         LIST_GROUPS,
         LIST_JOBS,
-        LIST_PLACES,
+        LIST_CLUSTERS,
         MOST_GROUPS,
         NO_BIN,
         WORKGROUP
@@ -112,6 +115,8 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/sorting.wgsl", FORM_COUNT),
     wgsl_file!(
         "sort_plants.wgsl",
+        ANCHOR_CELLS,
+        BARE_BUCKET,
         BINS,
         BUCKET_VERTICES,
         BUCKETS,
@@ -122,7 +127,7 @@ pub const SHADERS: &[WgslFile] = &[
         LIST_BIN_TRIANGLES,
         LIST_GROUPS,
         LIST_JOBS,
-        LIST_PLACES,
+        LIST_CLUSTERS,
         NO_BUCKET,
         WIDEN_POWER,
         WORKGROUP
@@ -153,6 +158,7 @@ pub fn layouts() -> Vec<StructLayout> {
         plants::Bucket::layout(),
         plants::FormUniform::layout(),
         plants::PlantLook::layout(),
+        sort_plants::ClusterRecord::layout(),
         sort_plants::CountUniform::layout(),
         sort_plants::DrawArgs::layout(),
         sort_plants::SortUniform::layout(),

@@ -18,7 +18,7 @@ use super::ground_look::GroundTexture;
 use super::pipeline::{Drawing, READ_STORAGE, SAMPLER, TEXTURE, UNIFORM, bind_group, group_layout};
 use super::plant_form::{BUCKETS, DETAILS, FORM_BLADE, FORMS, FormDrawing, form_index};
 use super::seed_triangles::SeededTriangles;
-use super::sort_plants::{DrawArgs, PlantSort, SortInput};
+use super::sort_plants::{DrawArgs, PlantSort, SeededClusters, SortInput};
 use super::view_group::ViewGroups;
 
 /// Details whose plants have shadows: those of plants that are nearer than twice
@@ -240,6 +240,8 @@ impl PlantsLayer {
                 detail: input.detail,
                 most: most_on_triangle(input) as f32,
                 triangles_per_tile: input.field.grid.triangles_per_tile(),
+                plants_per_triangle: input.field.grid.plants_per_triangle(),
+                cluster: input.field.seeds.cluster,
                 forms: &forms,
                 segments,
                 tiles: &tiles,
@@ -321,6 +323,14 @@ impl PlantsLayer {
     /// The device's.
     pub(super) fn read_triangles(&self, gpu: &Gpu) -> Result<SeededTriangles, GpuError> {
         self.sort.read_triangles(gpu)
+    }
+
+    /// Reads back what the last frame made of its clusters. Waits for the device.
+    ///
+    /// # Errors
+    /// The device's.
+    pub(super) fn read_clusters(&self, gpu: &Gpu) -> Result<SeededClusters, GpuError> {
+        self.sort.read_clusters(gpu)
     }
 
     /// Reads back what the last frame drew, by form. Waits for the device: for tests and benches.

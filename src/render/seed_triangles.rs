@@ -1,6 +1,6 @@
-//! The list of places in which a frame looks for plants: P15 section 3.2, on the device.
+//! The list of clusters in which a frame looks for plants: P15 section 3.2, on the device.
 //!
-//! Every seeding triangle of the tiles in view gets its count of places, its own or that of its bin
+//! Every seeding triangle of the tiles in view gets its count of clusters, its own or that of its bin
 //! ([`Submission`](super::Submission)). Shader: `shaders/seed_triangles.wgsl`. The buffers grow with
 //! the largest frame.
 
@@ -14,15 +14,15 @@ use super::SHADERS;
 use super::blade_tiles::{DrawnTile, Submission};
 use super::sum_rows::{RowSums, Rows};
 
-/// Words of the list's head: its jobs (WORKGROUP places each), the workgroups that take them (three
-/// words), its places, the place at which each bin ends, the triangles before each bin.
+/// Words of the list's head: its jobs (WORKGROUP clusters each), the workgroups that take them (three
+/// words), its clusters, the cluster at which each bin ends, the triangles before each bin.
 pub(super) const LIST_JOBS: u32 = 0;
 pub(super) const LIST_GROUPS: u32 = 1;
-pub(super) const LIST_PLACES: u32 = 4;
+pub(super) const LIST_CLUSTERS: u32 = 4;
 pub(super) const LIST_BIN_ENDS: u32 = 8;
 pub(super) const LIST_BIN_TRIANGLES: u32 = LIST_BIN_ENDS + BINS as u32;
 const LIST_WORDS: usize = LIST_BIN_TRIANGLES as usize + BINS;
-/// A triangle without places.
+/// A triangle without clusters.
 pub(super) const NO_BIN: u32 = 255;
 
 /// The list and what it is made with.
@@ -64,14 +64,14 @@ impl SeedTriangles {
                 &[(0, uniform), (4, write), (6, write)],
                 WORKGROUP,
             )?,
-            rows: Buffer::new(gpu, "places per group of triangles", 0, storage)?,
+            rows: Buffer::new(gpu, "clusters per group of triangles", 0, storage)?,
             totals: Buffer::new(gpu, "triangles per bin", BINS, storage)?,
             order_of_bins: Buffer::new(gpu, "triangles by bin", 0, storage)?,
             groups: Buffer::new(gpu, "groups of triangles", 1, storage)?,
             triangles: Buffer::new(gpu, "triangles in view", 0, storage)?,
             list: Buffer::new(
                 gpu,
-                "list of places",
+                "list of clusters",
                 LIST_WORDS,
                 storage | BufferUsages::INDIRECT,
             )?,
@@ -116,8 +116,8 @@ impl SeedTriangles {
         self.group_count.clamp(1, MOST_GROUPS)
     }
 
-    /// Where the triangles of the list's places are looked up.
-    pub(super) fn places(&self) -> &Buffer<u32> {
+    /// Where the triangles of the list's clusters are looked up.
+    pub(super) fn order(&self) -> &Buffer<u32> {
         match self.submission {
             Submission::Exact => &self.rows,
             Submission::Bins => &self.order_of_bins,
@@ -169,7 +169,7 @@ impl SeedTriangles {
         self.size.record(into, &sized, Groups::Direct([1, 1, 1]));
     }
 
-    /// The counts that the last frame gave its triangles, and the places in its list. Waits for the
+    /// The counts that the last frame gave its triangles, and the clusters in its list. Waits for the
     /// device.
     ///
     /// # Errors
@@ -179,7 +179,7 @@ impl SeedTriangles {
         let list = self.list.read(gpu, LIST_WORDS)?;
         Ok(SeededTriangles {
             counts: triangles.iter().map(|t| f32::from_bits(t[0])).collect(),
-            places: u64::from(list[LIST_PLACES as usize]),
+            clusters: u64::from(list[LIST_CLUSTERS as usize]),
         })
     }
 }
@@ -189,6 +189,6 @@ impl SeedTriangles {
 pub struct SeededTriangles {
     /// Plants and companions of every triangle of the tiles in view, with their fractions.
     pub counts: Vec<f32>,
-    /// Places that were looked at for plants.
-    pub places: u64,
+    /// Clusters that were looked at for plants: as many as places where seeds lie alone.
+    pub clusters: u64,
 }

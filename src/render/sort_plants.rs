@@ -6,7 +6,7 @@
 
 use wgpu::BufferUsages;
 
-use crate::field::count::{BINS, Bins};
+use crate::field::count::{BINS, Bins, clusters_in};
 use crate::field::plant::MAX_SPECIES;
 use crate::gpu::passes::{Access, Groups, Kernel, Recording, WORKGROUP};
 use crate::gpu::{Buffer, Gpu, GpuError};
@@ -20,8 +20,9 @@ use super::plant_form::{BUCKETS, DETAILS, FORM_COUNT, FORMS};
 use super::seed_triangles::{LIST_GROUPS, SeedTriangles, SeededTriangles};
 use super::sum_rows::{RowSums, Rows};
 
-/// A candidate that is not seen.
+/// A cluster that is not seen, and one on bare ground.
 pub(super) const NO_BUCKET: u32 = 63;
+pub(super) const BARE_BUCKET: u32 = 62;
 /// Rules of counting, as the shader knows them.
 pub(super) const COUNT_BY_DISTANCE: u32 = 0;
 pub(super) const COUNT_BY_PROJECTED_AREA: u32 = 1;
@@ -63,6 +64,22 @@ gpu_struct! {
 }
 
 gpu_struct! {
+    pub(super) struct ClusterRecord {
+        tile: u32,
+        rank: u32,
+        what: u32,
+        members: u32,
+        bucket: u32,
+        before: u32,
+        sizes: u32,
+        end: f32,
+        ramp: f32,
+        index: u32,
+        spare: [u32; 2],
+    }
+}
+
+gpu_struct! {
     pub(super) struct DrawArgs {
         pub(super) vertices: u32,
         pub(super) instances: u32,
@@ -80,11 +97,32 @@ pub(super) struct SortInput<'a> {
     /// Plants of a triangle and their companions.
     pub(super) most: f32,
     pub(super) triangles_per_tile: u32,
+    pub(super) plants_per_triangle: u32,
+    /// Seeds of a cluster.
+    pub(super) cluster: u32,
     /// Form of each kind.
     pub(super) forms: &'a [u32],
     /// Segments of a plant.
     pub(super) segments: u32,
     pub(super) tiles: &'a [DrawnTile],
+}
+
+/// What the first stage made of its clusters. The rest of those submitted are out of sight.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct SeededClusters {
+    pub submitted: u64,
+    /// On ground where nothing grows.
+    pub bare: u64,
+    /// With at least one plant that is drawn.
+    pub drawn: u64,
+}
+
+impl SortInput<'_> {
+    /// A number that a tile's clusters do not exceed.
+    fn most_clusters(&self, tile: &DrawnTile) -> u32 {
+        let places = tile.most_places / self.triangles_per_tile;
+        clusters_in(places, self.plants_per_triangle, self.cluster) * self.triangles_per_tile
+    }
 }
 
 /// The lists on the device.
@@ -95,7 +133,7 @@ pub(super) struct PlantSort {
     list: Kernel,
     sort: Kernel,
     uniform: Buffer<SortUniform>,
-    candidates: Buffer<[u32; 4]>,
+    clusters: Buffer<ClusterRecord>,
     job_counts: Buffer<u32>,
     pub(super) tiles: Buffer<DrawnTile>,
     pub(super) totals: Buffer<u32>,
@@ -137,7 +175,7 @@ impl PlantSort {
             list: kernel("list_plants", &listed)?,
             sort: kernel("sort_plants", &sorted)?,
             uniform: Buffer::new(gpu, "plant sorting", 1, BufferUsages::UNIFORM)?,
-            candidates: Buffer::new(gpu, "plant candidates", 0, storage)?,
+            clusters: Buffer::new(gpu, "clusters of plants", 0, storage)?,
             job_counts: Buffer::new(gpu, "plants per job", 0, storage)?,
             tiles: Buffer::new(gpu, "drawn tiles", 1024, storage)?,
             totals: Buffer::new(gpu, "plants per bucket", buckets, storage)?,
@@ -173,13 +211,15 @@ impl PlantSort {
         let places: usize = (input.tiles.iter())
             .map(|tile| tile.most_places as usize)
             .sum();
+        let clusters: usize = (input.tiles.iter())
+            .map(|tile| input.most_clusters(tile) as usize)
+            .sum();
         // One job at least says that there is nothing to draw.
-        let jobs = places.div_ceil(WORKGROUP as usize).max(1);
-        let places = jobs * WORKGROUP as usize;
-        self.candidates.reserve(gpu, places)?;
+        let jobs = clusters.div_ceil(WORKGROUP as usize).max(1);
+        (self.clusters).reserve(gpu, jobs * WORKGROUP as usize)?;
         self.job_counts.reserve(gpu, jobs * BUCKETS as usize)?;
-        let grown =
-            self.tiles.write_or_grow(gpu, input.tiles)? | self.sorted.reserve(gpu, places)?;
+        let grown = self.tiles.write_or_grow(gpu, input.tiles)?
+            | self.sorted.reserve(gpu, places.max(1))?;
         let uniform = self.uniform(input, triangles);
         self.uniform.write(gpu, 0, &[uniform])?;
         Ok(grown)
@@ -193,7 +233,7 @@ impl PlantSort {
         let (uniform, triangles) = (&self.uniform.raw, &self.triangles);
         triangles.record(gpu, into, &self.sums, uniform, &self.tiles);
         let (list, counts) = (&triangles.list, &self.job_counts.raw);
-        let candidates = &self.candidates.raw;
+        let clusters = &self.clusters.raw;
         let groups = Groups::Indirect(list, LIST_GROUPS);
         let listed = self.list.bind(
             gpu,
@@ -201,9 +241,9 @@ impl PlantSort {
                 (0, uniform),
                 (1, &self.tiles.raw),
                 (2, &triangles.triangles.raw),
-                (3, &triangles.places().raw),
+                (3, &triangles.order().raw),
                 (4, &list.raw),
-                (5, candidates),
+                (5, clusters),
                 (6, counts),
             ],
         );
@@ -220,7 +260,7 @@ impl PlantSort {
             &[
                 (0, uniform),
                 (4, &list.raw),
-                (5, candidates),
+                (5, clusters),
                 (6, counts),
                 (7, &self.totals.raw),
                 (8, &self.sorted.raw),
@@ -239,6 +279,21 @@ impl PlantSort {
             return Ok(SeededTriangles::default());
         }
         self.triangles.read(gpu)
+    }
+
+    /// Reads back what the last frame made of its clusters. Waits for the device.
+    ///
+    /// # Errors
+    /// The device's.
+    pub(super) fn read_clusters(&self, gpu: &Gpu) -> Result<SeededClusters, GpuError> {
+        let submitted = self.read_triangles(gpu)?.clusters;
+        let records = self.clusters.read(gpu, submitted as usize)?;
+        let count = |is_one: fn(&&ClusterRecord) -> bool| records.iter().filter(is_one).count();
+        Ok(SeededClusters {
+            submitted,
+            bare: count(|record| record.bucket == BARE_BUCKET) as u64,
+            drawn: count(|record| record.bucket < BUCKETS) as u64,
+        })
     }
 
     fn uniform(&self, input: &SortInput<'_>, triangles: u32) -> SortUniform {

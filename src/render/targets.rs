@@ -28,6 +28,13 @@ pub(super) fn most_samples(gpu: &Gpu) -> u32 {
     if flags.contains(needed) { 4 } else { 1 }
 }
 
+/// Bytes of a picture's textures: light and depth per sample, resolved light, the shown picture and its
+/// copy for reading.
+pub(super) fn picture_bytes([width, height]: [u32; 2], samples: u32) -> u64 {
+    let per_pixel = u64::from(samples) * (8 + 4) + 8 + 4 + 4;
+    u64::from(width) * u64::from(height) * per_pixel
+}
+
 /// Refuses a picture that the device cannot hold, before anything is allocated.
 ///
 /// # Errors
@@ -43,9 +50,7 @@ pub(super) fn check_size(gpu: &Gpu, size: [u32; 2], samples: u32) -> Result<(), 
             limit,
         });
     }
-    // Light and depth per sample, resolved light, the shown picture and its copy for reading.
-    let per_pixel = u64::from(samples) * (8 + 4) + 8 + 4 + 4;
-    let asked = u64::from(width) * u64::from(height) * per_pixel;
+    let asked = picture_bytes(size, samples);
     if asked > limits.max_buffer_size {
         return Err(RenderError::PictureBytes {
             width,

@@ -1,10 +1,10 @@
-//! Methods by name: settings of the solver that can be compared in one run.
+//! Methods by name: settings of the solver, and of the lean of blades, that can be compared in one run.
 
 use crate::scene::method::{Collide, CubePer, Method, Push, Recovery, Sampling, Springs};
-use crate::scene::{Root, Solver};
+use crate::scene::{Root, Scene, Solver};
 use crate::sim::reference;
 
-/// A setting of the solver with a name.
+/// A setting with a name.
 #[derive(Clone, Copy, Debug)]
 pub struct NamedMethod {
     pub name: &'static str,
@@ -12,6 +12,8 @@ pub struct NamedMethod {
     pub family: &'static str,
     pub what: &'static str,
     apply: fn(&mut Solver),
+    /// Lean of all blades at the root, in degrees, in place of the scene's.
+    lean_deg: Option<f32>,
 }
 
 impl NamedMethod {
@@ -20,7 +22,7 @@ impl NamedMethod {
     pub fn keeps_blades(&self, solver: &Solver) -> bool {
         let mut changed = solver.clone();
         self.apply(&mut changed);
-        changed.root == solver.root
+        changed.root == solver.root && self.lean_deg.is_none()
     }
 
     /// Whether the method says itself how long a sub-step is, whatever the scene's.
@@ -44,7 +46,17 @@ impl NamedMethod {
         changed != scene && reference::solver(&changed) == reference::solver(&scene)
     }
 
-    /// Gives a scene's solver the method's settings, and leaves the others.
+    /// Gives a scene the method's settings, and leaves the others.
+    pub fn apply_to_scene(&self, scene: &mut Scene) {
+        self.apply(&mut scene.solver);
+        if let Some(lean_deg) = self.lean_deg {
+            for species in &mut scene.grass.species {
+                species.lean_deg = [lean_deg; 2];
+            }
+        }
+    }
+
+    /// The same for the solver alone.
     pub fn apply(&self, solver: &mut Solver) {
         (self.apply)(solver);
     }
@@ -55,6 +67,9 @@ pub const DEFAULT: &str = "default";
 
 /// The root of P15.
 pub const ROOT_PAPER: &str = "root-paper";
+
+/// Blades without the lean that keeps them away from the critical stiffness.
+pub const LEAN_0: &str = "lean-0";
 
 /// Every method, the default first.
 pub const METHODS: &[NamedMethod] = &[
@@ -303,6 +318,16 @@ pub const METHODS: &[NamedMethod] = &[
         "the root's hinge as stiff as the others, k′ (P15), instead of 2k′: another blade",
         |s| s.root = Root::Paper,
     ),
+    leaning(
+        LEAN_0,
+        0.0,
+        "every blade grows upright from its root: another blade",
+    ),
+    leaning(
+        "lean-5",
+        5.0,
+        "every blade leans by 5° at its root: another blade",
+    ),
 ];
 
 /// A share no body can travel in one sub-step.
@@ -324,6 +349,14 @@ const fn named(
         family,
         what,
         apply,
+        lean_deg: None,
+    }
+}
+
+const fn leaning(name: &'static str, lean_deg: f32, what: &'static str) -> NamedMethod {
+    NamedMethod {
+        lean_deg: Some(lean_deg),
+        ..named(name, "lean", what, |_| {})
     }
 }
 
@@ -362,47 +395,4 @@ fn grass_steps(solver: &mut Solver, steps: u32) {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use super::*;
-
-    #[test]
-    fn names_are_unique_and_each_method_changes_something_of_its_own() {
-        let names: BTreeSet<_> = METHODS.iter().map(|m| m.name).collect();
-        assert_eq!(names.len(), METHODS.len());
-        let solvers: BTreeSet<String> = METHODS
-            .iter()
-            .map(|method| {
-                let mut solver = Solver::default();
-                method.apply(&mut solver);
-                format!("{solver:?}")
-            })
-            .collect();
-        // `substep-120` is the default by another name, as one point of its curve.
-        assert_eq!(solvers.len(), METHODS.len() - 1);
-    }
-
-    #[test]
-    fn methods_tell_what_other_options_are_lost_beside_them() {
-        let names = |told: fn(&NamedMethod) -> bool| -> Vec<&str> {
-            let methods = METHODS.iter().filter(|method| told(method));
-            methods.map(|method| method.name).collect()
-        };
-        let own_substep = names(NamedMethod::has_own_substep);
-        assert!(own_substep.iter().all(|name| name.starts_with("substep-")));
-        assert_eq!(own_substep.len(), 5);
-        let lost = names(NamedMethod::is_lost_on_reference);
-        for (name, is_lost) in [
-            (DEFAULT, false),
-            ("nearest-64", true),
-            ("paper", true),
-            ("rounds-1", true),
-            ("segments-4", false),
-            (ROOT_PAPER, false),
-            ("substep-60", false),
-        ] {
-            assert_eq!(lost.contains(&name), is_lost, "{name}");
-        }
-    }
-}
+mod tests;

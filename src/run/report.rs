@@ -110,7 +110,10 @@ pub struct Metrics {
     pub max_penetration_m: f64,
     pub p999_penetration_m: f64,
     pub rms_penetration_m: f64,
-    /// Largest distance by which a plant was pushed past the surface.
+    /// Largest depth of a node of a plant that no body pushed or held in the sub-step.
+    pub max_missed_penetration_m: f64,
+    /// Largest distance by which a plant was pushed past the surface, with the body where it came
+    /// closest in the sub-step.
     pub over_push_m: f64,
     /// The same as `max_penetration_m` for the middles of segments whose ends are outside.
     pub max_middle_penetration_m: f64,
@@ -253,6 +256,7 @@ impl Metrics {
             max_penetration_m: watch.max_penetration_m(),
             p999_penetration_m: watch.p999_penetration_m(),
             rms_penetration_m: watch.rms_penetration_m(),
+            max_missed_penetration_m: watch.missed_m,
             over_push_m: watch.over_push_m,
             max_middle_penetration_m: watch.max_middle_m,
             max_length_strain: watch.max_strain,
@@ -376,6 +380,7 @@ pub(super) mod tests {
             "jitter_m_per_frame",
             "max_length_strain",
             "max_middle_penetration_m",
+            "max_missed_penetration_m",
             "max_offset_m",
             "max_penetration_m",
             "nan_count",

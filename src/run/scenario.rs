@@ -255,7 +255,7 @@ pub fn run_watched(
         against = Some(reference.map_err(|error| RunError::new(name, error))?);
     }
     if let Some(method) = options.method {
-        method.apply(&mut scene.solver);
+        method.apply_to_scene(&mut scene);
     }
     let substep_s = scene.solver.substep_s;
     // A millionth of a sub-step forgives the rounding of the division.

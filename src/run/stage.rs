@@ -112,11 +112,7 @@ impl Stage {
             shapes: meadow.bodies.shapes().len(),
             sun: Sun::default(),
             exposure: Exposure::default(),
-            detail: if gpu.adapter.is_software {
-                BladeDetail::software()
-            } else {
-                BladeDetail::default()
-            },
+            detail: BladeDetail::of_device(gpu),
             loaded: loaded.clone(),
             meadow,
             engine,

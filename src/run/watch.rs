@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::base::most;
 use crate::base::statistics::quantile;
 use crate::gpu::GpuError;
 use crate::sim::Meadow;
@@ -19,6 +20,8 @@ pub struct Watch {
     pub worst: Depth,
     pub pinched: u64,
     pub over_push_m: f64,
+    /// Largest depth of a node of a plant that no body pushed or held, in metres.
+    pub missed_m: f64,
     /// Largest depth of the middle of a segment whose ends are outside, in metres.
     pub max_middle_m: f64,
     pub max_strain: f64,
@@ -58,6 +61,7 @@ impl Watch {
     fn fold(&mut self, frame: &Snapshot) {
         self.depths_m.extend(&frame.depths_m);
         self.pushed_nodes += frame.pushed_nodes;
+        self.missed_m = most(self.missed_m, frame.missed_m);
         if frame.worst.depth_m / frame.worst.limit_m > self.worst.depth_m / self.worst.limit_m {
             self.worst = frame.worst;
         }
@@ -87,7 +91,7 @@ impl Watch {
         quantile(&self.depths_m, 1.0 - 1e-3 * nodes / inside).unwrap_or(0.0)
     }
 
-    /// Root mean square depth over all pushed nodes, in metres.
+    /// Root mean square depth over all nodes of plants pushed or held, in metres.
     pub fn rms_penetration_m(&self) -> f64 {
         // The sum of nothing is −0, which would be printed.
         let squares = self.depths_m.iter().fold(0.0, |sum, d| sum + d * d);

@@ -13,14 +13,32 @@ use super::contact::Touch;
 /// pose, and does not recover yet. Without this it would sink into the body a little in every
 /// sub-step and be pushed out again, and tremble for ever.
 pub fn held<R: Real>(nodes: &Nodes<R>, segments: usize, touches: &[Touch<R>], reach: R) -> bool {
-    touches
+    any_node(nodes, segments, touches, reach, Touch::nearly_holds)
+}
+
+/// True where a plant that is let go would recover into a body within this sub-step, in which nobody
+/// looks at it again: it keeps its pose too. `nodes` is its pose of now.
+pub fn in_the_way<R: Real>(
+    nodes: &Nodes<R>,
+    segments: usize,
+    touches: &[Touch<R>],
+    reach: R,
+) -> bool {
+    any_node(nodes, segments, touches, reach, Touch::will_hold)
+}
+
+/// True where a movable node is to a part within reach what `holds` asks.
+fn any_node<'a, R: Real>(
+    nodes: &Nodes<R>,
+    segments: usize,
+    touches: &[Touch<'a, R>],
+    reach: R,
+    holds: impl Fn(&Touch<'a, R>, Vec3<R>) -> bool,
+) -> bool {
+    let mut near = touches
         .iter()
-        .filter(|touch| touch.reaches(nodes[0], reach))
-        .any(|touch| {
-            nodes[1..=segments]
-                .iter()
-                .any(|&node| touch.nearly_holds(node))
-        })
+        .filter(|touch| touch.reaches(nodes[0], reach));
+    near.any(|touch| nodes[1..=segments].iter().any(|&node| holds(touch, node)))
 }
 
 /// A node this close to the ground cannot get out of a body that stands on it, in metres.

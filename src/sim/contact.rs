@@ -118,20 +118,30 @@ impl<'a, R: Real> Touch<'a, R> {
         (root - nearest).length_squared() <= distance * distance
     }
 
-    /// True where a vertex is inside the part at `pose`.
+    /// True where a vertex is inside the part at `pose`, and not merely on its surface.
     pub fn holds(&self, pose: &Pose<R>, vertex: Vec3<R>) -> bool {
         let p = pose.inverse_point(vertex);
+        let on_surface_m = on_surface_m();
         match self.collider {
-            ColliderOf::Cube(cube) => cube.inside(p),
-            ColliderOf::Analytic(solid) => solid.depth(p) > R::ZERO,
-            ColliderOf::Voxels(voxels) => voxels.inside(p),
+            ColliderOf::Cube(cube) => cube.is_deeper(p, on_surface_m),
+            ColliderOf::Analytic(solid) => solid.depth(p) > on_surface_m,
+            ColliderOf::Voxels(voxels) => voxels.is_deeper(p, on_surface_m),
         }
     }
 
     /// True where a vertex is inside the part at the end of the sub-step or so close to it that a
     /// plant the body pushed before is still held.
     pub fn nearly_holds(&self, vertex: Vec3<R>) -> bool {
-        self.grown.depth(self.to.inverse_point(vertex)) > -self.hold_m
+        self.depth_at_end(vertex) > -self.hold_m
+    }
+
+    /// True where a vertex would be inside the part at the end of the sub-step.
+    pub fn will_hold(&self, vertex: Vec3<R>) -> bool {
+        self.depth_at_end(vertex) > on_surface_m()
+    }
+
+    fn depth_at_end(&self, vertex: Vec3<R>) -> R {
+        self.grown.depth(self.to.inverse_point(vertex))
     }
 
     /// The way out for a vertex inside the part at `pose`, with its normal turned into the anchor's
@@ -191,6 +201,17 @@ pub const HOLD_M: f64 = 0.001;
 pub fn body_of(memory: u32) -> Option<u32> {
     (memory & FACE_MASK != 0).then_some(memory >> (FACE_BITS + PART_BITS))
 }
+
+/// A vertex is on a surface where it is no deeper than this many roundings of a coordinate of a metre.
+/// One that was pushed onto the surface is inside or outside of it by chance; were it pushed anew each
+/// time, its plant would creep for as long as the body lies there.
+pub const ON_SURFACE_ROUNDINGS: f64 = 16.0;
+fn on_surface_m<R: Real>() -> R {
+    R::of(ON_SURFACE_ROUNDINGS) * R::EPSILON
+}
+
+/// The same for the float of the shaders, in metres.
+pub const ON_SURFACE_M: f32 = ON_SURFACE_ROUNDINGS as f32 * f32::EPSILON;
 
 /// Body and part of a contact as the upper bits of a vertex's memory. Bodies share keys beyond
 /// 65,536 and parts beyond 256: a shared key costs a steady face at worst.

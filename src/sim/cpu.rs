@@ -355,8 +355,13 @@ fn touched_plants<R: Real>(
         };
         if collide::touched(&pose, segments, &touches, sweeps, reach, pinned) {
             found.push(Touched { place, sweeps });
-        } else if before && collide::held(&pose, segments, &touches, reach) {
-            found.push(Touched { place, sweeps: 0 });
+        } else if before {
+            let let_go = || poses(field, &meadow.work, &fading, tile, &plant, slab, place).1;
+            if collide::held(&pose, segments, &touches, reach)
+                || collide::in_the_way(&let_go(), segments, &touches, reach)
+            {
+                found.push(Touched { place, sweeps: 0 });
+            }
         }
     }
     found

@@ -12,6 +12,8 @@
 //!   part is never inside it, so that nothing of the part is lost at a silhouette, and a surface of
 //!   radius R is met to h²/4R at most with texels of side h (0.04 mm for a ball of 15 cm at 64);
 //!   depths alone, mixed over hit texels (*masked*), know the silhouette to half a texel;
+//! - the plane is looked up once more where the way out ends, since the one below the point is not the
+//!   nearest of a round part;
 //! - a texel whose surface point lies inside a neighbouring part of the same body is *hidden*: it
 //!   tells inside from outside, but no way out leads through it.
 //!
@@ -131,17 +133,17 @@ impl DepthCube {
         size.x.max(size.y).max(size.z) / self.resolution as f32
     }
 
-    /// True where a point is behind all six faces.
-    pub fn inside<R: Real>(&self, p: Vec3<R>) -> bool {
+    /// True where a point is farther behind all six faces than `depth_m`.
+    pub fn is_deeper<R: Real>(&self, p: Vec3<R>, depth_m: R) -> bool {
         (0..3).all(|a| {
             axis(p, a) > R::of_f32(axis(self.low, a)) && axis(p, a) < R::of_f32(axis(self.high, a))
-        }) && (0..6).all(|face| self.sample(p, face).is_some_and(|s| s.behind > R::ZERO))
+        }) && (0..6).all(|face| self.sample(p, face).is_some_and(|s| s.behind > depth_m))
     }
 
     /// The way out for a point inside, or `None` outside. `kept` is the face of the last sub-step
     /// or [`NO_FACE`](super::solid::NO_FACE).
     pub fn exit<R: Real>(&self, p: Vec3<R>, kept: u32, reach: &Reach<R>) -> Option<Exit<R>> {
-        if !self.inside(p) {
+        if !self.is_deeper(p, R::ZERO) {
             return None;
         }
         let mut choice = Choice::new(p, kept, reach);
@@ -160,7 +162,32 @@ impl DepthCube {
             };
             choice.offer(exit, surface.hidden);
         }
-        choice.take()
+        let exit = choice.take()?;
+        Some(match (self.push, self.sampling) {
+            (Push::Ratio, Sampling::Planes) => self.nearer(p, exit),
+            _ => exit,
+        })
+    }
+
+    /// The way out to the surface where `exit` ends, if that is shorter. A face is read below the
+    /// point, not where its way out ends: on a round part the plane found there is tilted by the way's
+    /// sideways share over the radius and too far by half its square (1 mm for 2 cm in a ball of
+    /// 15 cm; 0.03 mm after this step). No plane of a convex part cuts into it, so that the shorter way
+    /// still leads outside.
+    fn nearer<R: Real>(&self, p: Vec3<R>, exit: Exit<R>) -> Exit<R> {
+        let way = exit.normal * exit.depth;
+        let Some(surface) = self.sample(p + way, exit.face) else {
+            return exit;
+        };
+        let depth = surface.behind + surface.normal.dot(way);
+        if surface.hidden || depth <= R::ZERO || depth >= exit.depth {
+            return exit;
+        }
+        Exit {
+            depth,
+            normal: surface.normal,
+            ..exit
+        }
     }
 
     /// A face's surface over a point, between its texels as `sampling` says; `None` outside the

@@ -36,21 +36,26 @@ impl<R: Real> GrassState<R> for super::cpu::Grass<R> {
 /// Metrics of one instant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Snapshot {
-    /// Depths of the nodes inside a true shape that were pushed in this sub-step, in metres; nodes
-    /// pinched between body and ground not counted.
+    /// Depths of the nodes inside a true shape, of plants within a body's reach, in metres; nodes pinched
+    /// between body and ground not counted.
     pub depths_m: Vec<f64>,
-    /// The same for the middles of their segments, where neither end is inside.
+    /// The same for the middles of segments of plants that a body pushed or held in this sub-step, where
+    /// neither end is inside.
     pub middle_depths_m: Vec<f64>,
     /// The deepest of them relative to what its collider promises.
     pub worst: Depth,
-    /// Movable nodes of plants pushed in this sub-step.
+    /// Movable nodes of plants pushed or held in this sub-step.
     pub pushed_nodes: u64,
+    /// Largest depth of a node of any other plant within a body's reach, in metres: of one that the
+    /// collider did not notice.
+    pub missed_m: f64,
     /// Nodes that lie on the ground inside a body.
     pub pinched: u64,
     /// Plants whose root a body stands on or covers.
     pub buried: u64,
     /// Largest gap between a plant pushed in this sub-step and the body, in metres: how far its
-    /// nearest node was pushed past the surface.
+    /// nearest node was pushed past the surface, with the body where it came closest. A body that
+    /// is gone by the end of the sub-step has not pushed the plant as far as it went.
     pub over_push_m: f64,
     pub max_strain: f64,
     pub max_offset_m: f64,
@@ -159,7 +164,8 @@ fn measured<R: Real>(meadow: &Meadow, tile: &TileWork, slab: &Slab<R>) -> Snapsh
     let mut snapshot = Snapshot::default();
     let bodies = TrueBodies::near(meadow, tile);
     for place in 0..meadow.field.grid.plants_per_tile() {
-        if slab.touched_at[place as usize] == 0 {
+        let is_touched = slab.touched_at[place as usize] != 0;
+        if !is_touched && !may_be_reached(meadow, tile, &bodies, place) {
             continue;
         }
         if let Some(plant) = stand(meadow, tile, slab, place) {
@@ -169,12 +175,27 @@ fn measured<R: Real>(meadow: &Meadow, tile: &TileWork, slab: &Slab<R>) -> Snapsh
     snapshot
 }
 
+/// Whether a body may reach the plant at a place.
+fn may_be_reached(meadow: &Meadow, tile: &TileWork, bodies: &TrueBodies, place: u32) -> bool {
+    let plant = || {
+        meadow
+            .field
+            .responding_plant(&tile.anchor, tile.tile, place)
+    };
+    let is_near = |plant: Plant| {
+        let root = Vec3::of_f32(plant.root_in_anchor);
+        bodies.may_reach(root, f64::from(plant.height_m))
+    };
+    !tile.contacts.is_empty() && plant().is_some_and(is_near)
+}
+
 impl Snapshot {
     fn joined(mut self, other: Self) -> Self {
         self.depths_m.extend(other.depths_m);
         self.middle_depths_m.extend(other.middle_depths_m);
         self.worst = self.worst.worse(other.worst);
         self.pushed_nodes += other.pushed_nodes;
+        self.missed_m = most(self.missed_m, other.missed_m);
         self.pinched += other.pinched;
         self.buried += other.buried;
         self.over_push_m = self.over_push_m.max(other.over_push_m);
@@ -204,63 +225,75 @@ impl Snapshot {
         for (node, wind) in plant.nodes.iter().zip(&plant.wind).skip(1) {
             self.max_offset_m = most(self.max_offset_m, (*node - *wind).length().to_f64());
         }
-        if plant.touched_at == meadow.work.now {
-            self.add_pushed(meadow, tile, bodies, plant);
-        }
+        self.add_contact(meadow, tile, bodies, plant);
     }
 
-    /// Depth of a pushed plant's nodes in the bodies near its tile, by their true shapes.
-    fn add_pushed<R: Real>(
+    /// What a plant is to the bodies near its tile, by their true shapes.
+    fn add_contact<R: Real>(
         &mut self,
         meadow: &Meadow,
         tile: &TileWork,
         bodies: &TrueBodies,
         plant: &Standing<R>,
     ) {
-        let root = Vec3::<f64>::of(plant.nodes[0].to_f64());
-        let covered = bodies
-            .deepest(root)
-            .is_some_and(|d| d.depth_m >= -ON_GROUND_M);
-        self.buried += u64::from(covered);
-        let mut nearest = f64::NEG_INFINITY;
-        let nodes = plant
-            .nodes
-            .iter()
-            .map(|node| Vec3::<f64>::of(node.to_f64()));
+        let nodes = plant.nodes.iter().map(|node| Vec3::of(node.to_f64()));
         let nodes: Vec<Vec3<f64>> = nodes.collect();
-        let mut below_inside = false;
-        for (&from, &p) in nodes.iter().zip(&nodes[1..]) {
-            self.pushed_nodes += 1;
-            let Some(found) = bodies.deepest(p) else {
-                return;
-            };
-            nearest = most(nearest, found.depth_m);
-            let ground: f64 = ground_in_anchor(&meadow.field.ground, &tile.anchor, p.x, p.z);
-            let excess = bodies.beyond_pinch(p, found, ground);
-            self.pinched += u64::from(found.depth_m > 0.0 && p.y <= ground + ON_GROUND_M);
-            if excess.depth_m > 0.0 {
-                self.depths_m.push(excess.depth_m);
-                self.worst = self.worst.worse(excess);
+        let excess = |p: Vec3<f64>, found| {
+            let ground = ground_in_anchor(&meadow.field.ground, &tile.anchor, p.x, p.z);
+            (bodies.beyond_pinch(p, found, ground), ground)
+        };
+        if plant.touched_at == meadow.work.now {
+            self.add_pushed(bodies, &nodes, excess);
+        } else if bodies.may_reach(nodes[0], f64::from(plant.plant.height_m)) {
+            for &p in &nodes[1..] {
+                let found = bodies.deepest(p).filter(|found| found.depth_m > 0.0);
+                let beyond = found.map(|found| excess(p, found).0);
+                if let Some(beyond) = beyond.filter(|beyond| beyond.depth_m > 0.0) {
+                    self.add_depth(beyond);
+                    self.missed_m = most(self.missed_m, beyond.depth_m);
+                }
             }
-            let is_inside = found.depth_m > 0.0;
-            if !is_inside && !below_inside {
-                self.add_middle(meadow, tile, bodies, (from + p) * 0.5);
-            }
-            below_inside = is_inside;
-        }
-        if nearest.is_finite() {
-            self.over_push_m = self.over_push_m.max(-nearest);
         }
     }
 
-    fn add_middle(&mut self, meadow: &Meadow, tile: &TileWork, bodies: &TrueBodies, p: Vec3<f64>) {
-        if let Some(found) = bodies.deepest(p).filter(|found| found.depth_m > 0.0) {
-            let ground: f64 = ground_in_anchor(&meadow.field.ground, &tile.anchor, p.x, p.z);
-            let excess = bodies.beyond_pinch(p, found, ground);
-            if excess.depth_m > 0.0 {
-                self.middle_depths_m.push(excess.depth_m);
+    fn add_depth(&mut self, beyond: Depth) {
+        self.depths_m.push(beyond.depth_m);
+        self.worst = self.worst.worse(beyond);
+    }
+
+    /// Depths of a plant that was pushed or is held. `excess` tells what a depth at a place is without
+    /// what body and ground share, and the ground's height there.
+    fn add_pushed(
+        &mut self,
+        bodies: &TrueBodies,
+        nodes: &[Vec3<f64>],
+        excess: impl Fn(Vec3<f64>, Depth) -> (Depth, f64),
+    ) {
+        let is_covered = |found: Depth| found.depth_m >= -ON_GROUND_M;
+        self.buried += u64::from(bodies.deepest(nodes[0]).is_some_and(is_covered));
+        self.pushed_nodes += nodes.len() as u64 - 1;
+        let mut below_inside = false;
+        for (&from, &p) in nodes.iter().zip(&nodes[1..]) {
+            let Some(found) = bodies.deepest(p) else {
+                return;
+            };
+            let (beyond, ground) = excess(p, found);
+            let is_inside = found.depth_m > 0.0;
+            self.pinched += u64::from(is_inside && p.y <= ground + ON_GROUND_M);
+            if beyond.depth_m > 0.0 {
+                self.add_depth(beyond);
             }
+            if !is_inside && !below_inside {
+                let middle = (from + p) * 0.5;
+                let found = bodies.deepest(middle).filter(|found| found.depth_m > 0.0);
+                let depth_m = found.map(|found| excess(middle, found).0.depth_m);
+                self.middle_depths_m
+                    .extend(depth_m.filter(|&depth_m| depth_m > 0.0));
+            }
+            below_inside = is_inside;
         }
+        let gap_m = bodies.least_gap_m(&nodes[1..], self.over_push_m);
+        self.over_push_m = most(self.over_push_m, gap_m);
     }
 }
 

@@ -9,9 +9,12 @@
 //!
 //! with r = ½ between movable nodes, and 0 for a pinned node and 1 for the one beside it. O09
 //! writes k·Δt for 2a, k ≤ 1, once per frame: that depends on the frame rate, does nothing with Δt
-//! in seconds and explodes when scaled up. Here κ is a rate in 1/s, and there are two methods:
+//! in seconds and explodes when scaled up. Here κ is a rate in 1/s, and [`relax`] knows two methods for
+//! a network of springs, a billboard or a chain. The blades of a meadow are not relaxed by it: theirs
+//! are the bend springs of [`sim::relax`](crate::sim::relax), or [`relax_blade`] where a scene asks for
+//! the printed formulas.
 //!
-//! - [`Method::Sequential`], the default: spring after spring, each seeing what the ones before it
+//! - [`Method::Sequential`]: spring after spring, each seeing what the ones before it
 //!   did, with a = κΔt/(1 + 2κΔt), which is first-order XPBD with compliance 1/(κΔt) (see
 //!   [`step`]). Stable at any κΔt. A blade's segments keep their exact lengths, and its bend springs
 //!   turn its hinges. The energy ½Σ(‖l‖ − l₀)² never grows: a pass that would raise it is replaced

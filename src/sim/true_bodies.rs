@@ -3,12 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::{Pose, Vec3};
+use crate::base::{Pose, Vec3, least};
 
 use super::meadow::Meadow;
-use super::parts::Tested;
+use super::parts::{Parts, Tested};
 use super::solid::Solid;
-use super::work::TileWork;
+use super::work::{Contact, TileWork};
 
 /// A node this close to the ground lies on it, in metres: on a slope the last segment is laid down by
 /// the height at its end before it is turned.
@@ -44,15 +44,29 @@ impl Depth {
     }
 }
 
-/// The true shapes of the bodies near a tile at the end of the sub-step.
+/// The true shapes of the bodies near a tile, at the end of the sub-step and on
+/// their way there.
 pub struct TrueBodies<'a> {
+    parts: &'a Parts,
     bodies: Vec<TrueBody<'a>>,
+    /// Middles, at the end, and radii of balls around the bodies' parts.
+    balls: Vec<(Vec3<f64>, f64)>,
 }
 
 struct TrueBody<'a> {
     solid: &'a Solid<f64>,
-    anchor_from_body: Pose<f64>,
+    contact: &'a Contact,
+    /// `anchor_from_body` at the end of the sub-step.
+    end: Pose<f64>,
     limit_m: f64,
+}
+
+impl TrueBody<'_> {
+    /// The least distance of some points from the body at a pose, 0 or less inside.
+    fn least_gap_m(&self, anchor_from_body: &Pose<f64>, points: &[Vec3<f64>]) -> f64 {
+        let gaps = (points.iter()).map(|&p| self.solid.gap(anchor_from_body.inverse_point(p)));
+        gaps.fold(f64::INFINITY, least)
+    }
 }
 
 impl<'a> TrueBodies<'a> {
@@ -70,21 +84,51 @@ impl<'a> TrueBodies<'a> {
             };
             let body = bodies.entry(contact.link).or_insert_with(|| TrueBody {
                 solid: &whole.solid,
-                anchor_from_body: contact.anchor_from_body(&meadow.parts),
+                contact,
+                end: contact.anchor_from_body(&meadow.parts, contact.sweeps),
                 limit_m,
             });
             body.limit_m = body.limit_m.max(limit_m);
         }
+        let balls = contacts
+            .iter()
+            .map(|contact| (contact.to.place, contact.radius_m));
         Self {
+            parts: &meadow.parts,
             bodies: bodies.into_values().collect(),
+            balls: balls.collect(),
         }
+    }
+
+    /// Whether a plant of some length may reach a body at the end of the sub-step.
+    pub fn may_reach(&self, root: Vec3<f64>, length_m: f64) -> bool {
+        let mut balls = self.balls.iter();
+        balls.any(|&(middle, radius_m)| (root - middle).length() <= radius_m + length_m)
+    }
+
+    /// How far off the nearest of some points was from the nearest body, where that came closest at the
+    /// end of one of its sweeps: 0 or less inside, infinite without bodies. Once it is not more than
+    /// `enough_m` no more sweeps are looked at.
+    pub fn least_gap_m(&self, points: &[Vec3<f64>], enough_m: f64) -> f64 {
+        let mut found = f64::INFINITY;
+        for body in &self.bodies {
+            // From the end on, where most plants are at the body.
+            for sweep in (1..=body.contact.sweeps).rev() {
+                let pose = body.contact.anchor_from_body(self.parts, sweep);
+                found = least(found, body.least_gap_m(&pose, points));
+                if found <= enough_m {
+                    return found;
+                }
+            }
+        }
+        found
     }
 
     /// The body a point is deepest in; a negative depth is how far off the nearest one is. `None`
     /// where there is no body.
     pub fn deepest(&self, p: Vec3<f64>) -> Option<Depth> {
         let depths = self.bodies.iter().map(|body| {
-            let p = body.anchor_from_body.inverse_point(p);
+            let p = body.end.inverse_point(p);
             let depth_m = body.solid.depth(p);
             Depth {
                 depth_m: if depth_m > 0.0 {

@@ -98,8 +98,9 @@ impl VoxelField {
         Some((depth, slope))
     }
 
-    pub fn inside<R: Real>(&self, p: Vec3<R>) -> bool {
-        self.read(p).is_some_and(|(depth, _)| depth > R::ZERO)
+    /// True where a point is deeper than `depth_m`.
+    pub fn is_deeper<R: Real>(&self, p: Vec3<R>, depth_m: R) -> bool {
+        self.read(p).is_some_and(|(depth, _)| depth > depth_m)
     }
 
     /// The way out along the steepest descent of the depth.

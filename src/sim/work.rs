@@ -185,12 +185,19 @@ fn turned_box(world_from_body: Pose<f64>, [low, high]: [[f64; 3]; 2]) -> Bounds 
 }
 
 impl Contact {
-    /// `anchor_from_body` at the end of the sub-step.
-    pub fn anchor_from_body(&self, parts: &Parts) -> Pose<f64> {
+    /// `anchor_from_body` at the end of a sweep, counted from 1.
+    pub fn anchor_from_body(&self, parts: &Parts, sweep: u32) -> Pose<f64> {
         let part_from_body = parts.parts[self.part as usize].pose.inverse();
+        // The last one is the end itself, to the last bit.
+        let anchor_from_part = if sweep >= self.sweeps {
+            self.to
+        } else {
+            let share = f64::from(sweep) / f64::from(self.sweeps);
+            self.from.lerp(self.to, share)
+        };
         Pose {
-            turn: part_from_body.turn.then(self.to.turn),
-            place: self.to.point(part_from_body.place),
+            turn: part_from_body.turn.then(anchor_from_part.turn),
+            place: anchor_from_part.point(part_from_body.place),
         }
     }
 }

@@ -333,9 +333,12 @@ fn pictures_and_benches_refuse_nonsense_before_they_start() {
         ],
         &["run", "still", "--engine", "cpu", "--require-gpu"],
         &["bench", "nothing"],
+        &["bench", "flight", "--spacing", "5"],
     ] {
         assert_eq!(code(&sward(wrong)), 2, "{wrong:?}");
     }
+    let missing = ["bench", "flight", "--height-map", "nowhere.png"];
+    assert_eq!(code(&sward(&missing)), 3);
 }
 
 /// With an adapter there is a picture that tells what it shows, without one the code is 4.

@@ -150,6 +150,10 @@ fn options_that_would_change_nothing_are_refused_by_name() {
             ["bench terrain", "--engine"],
         ),
         (
+            &["bench", "terrain", "--quick"],
+            ["bench flight", "--quick"],
+        ),
+        (
             &[
                 "report", "accuracy", "--quick", "--scene", "roll", "--method", "default",
             ],
@@ -218,7 +222,10 @@ fn a_trace_agrees_with_the_report_at_the_rate_of_the_sub_steps() {
             .iter()
             .map(|line| line[column].parse::<f64>().expect("a number"));
         let largest = values.fold(0.0, f64::max);
-        assert_eq!(metrics[name].as_f64(), Some(largest), "{name}");
+        // The reader of the JSON is right to a rounding only.
+        let told = metrics[name].as_f64().expect(name);
+        let off = (told - largest).abs();
+        assert!(off <= f64::EPSILON * largest, "{name}: {told} {largest}");
     }
     assert!(metrics["over_push_m"].as_f64() > Some(0.0));
 }

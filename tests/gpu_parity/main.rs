@@ -48,6 +48,7 @@ const CHECKS: &[(&str, Check)] = &[
         "a_sweep_agrees_with_closed_forms",
         passes::a_sweep_agrees_with_closed_forms,
     ),
+    ("stiff_springs_agree", passes::stiff_springs_agree),
     (
         "every_kind_of_solid_agrees",
         passes::every_kind_of_solid_agrees,

@@ -1,125 +1,15 @@
-//! Bodies that stay where they are: lying, buried in, or with a vertex in a place without a clear
-//! way out.
-
-use std::collections::BTreeMap;
+//! Bodies that are buried in the grass, or have a vertex in a place without a clear way out.
 
 use libtest_mimic::Failed;
 use sward::base::Vec3;
 use sward::base::philox::{philox2x32, unit};
 use sward::run::Engine;
-use sward::scene::Collider;
 use sward::sim::measure::GrassState;
 
 use super::Measured;
 use super::rig::{
-    CALM, FRAME_TICKS, Handmade, PlantKey, Rig, SECOND_TICKS, Setting, all_in_wind_pose, apart,
-    ensure,
+    CALM, FRAME_TICKS, Handmade, Rig, SECOND_TICKS, Setting, all_in_wind_pose, ensure,
 };
-
-/// A plant at rest under a body moves no more than this per displayed frame, in metres.
-const REST_M_PER_FRAME: f64 = 1e-5;
-/// Largest relative change of a segment's length while a body lies still.
-const REST_STRAIN: f64 = 0.02;
-/// Depth that a closed form may leave in `rest`, in metres.
-const REST_DEPTH_M: f64 = 1e-4;
-
-fn ball_scene(setting: &Setting, place: &str, motion: &str) -> String {
-    format!(
-        "(duration_s: 20, terrain: (ground: Flat(size_m: (4, 3))), {CALM}, bodies: [
-            (name: \"ball\", shape: Ball(radius_m: 0.15), position_m: {place}, motion: {motion},
-             collider: {})])",
-        setting.collider()
-    )
-}
-
-/// Ten seconds of a ball laid into the grass. A method that pushes out and then restores lengths
-/// leaves the blades inside by turns and creeps for ever.
-pub fn rest_laid(setting: &Setting) -> Measured {
-    rest(setting, &ball_scene(setting, "(0.1, 0.15, -0.05)", "Free"))
-}
-
-/// Dropped from twice its radius. Recovery starts anew after every bounce, so blades that are held
-/// only by turns sink in and are pushed out again.
-pub fn rest_dropped(setting: &Setting) -> Measured {
-    rest(setting, &ball_scene(setting, "(-0.3, 0.45, 0.2)", "Free"))
-}
-
-/// Rolled in at 1 m/s and stopped. Blades that were overrun lie in a heap, which a solver of few
-/// rounds never quite sorts out.
-pub fn rest_rolled(setting: &Setting) -> Measured {
-    let way = "Path(waypoints: [(at_s: 0, position_m: (-0.8, 0.15, 0)),
-        (at_s: 0.8, position_m: (0, 0.15, 0), rotation_deg: (0, 0, -305)),
-        (at_s: 1, position_m: (0.1, 0.15, 0), rotation_deg: (0, 0, -344))])";
-    rest(setting, &ball_scene(setting, "(-0.8, 0.15, 0)", way))
-}
-
-/// Runs until 10 s after the body stopped and measures from the second second on: every plant that
-/// the body still touches, and once all others have recovered, every plant.
-fn rest(setting: &Setting, scene: &str) -> Measured {
-    let mut rig = setting.rig(scene)?;
-    let stopped = run_until_still(&mut rig)?;
-    let settled = stopped + SECOND_TICKS;
-    rig.run_to(settled, FRAME_TICKS)?;
-    rig.seen = Default::default();
-    let recovered = settled + rig.meadow.recovery_ticks();
-    let mut before = rig.look()?;
-    let (mut largest_m, mut compared) = (0.0_f64, 0_u32);
-    let mut restless: BTreeMap<PlantKey, f64> = BTreeMap::new();
-    while rig.meadow.ticks < stopped + 10 * SECOND_TICKS {
-        rig.ticks(FRAME_TICKS)?;
-        let now = rig.look()?;
-        for (key, plant) in &now {
-            let Some(old) = before.get(key) else {
-                continue;
-            };
-            if old.touched_at < settled && rig.meadow.ticks <= recovered {
-                continue;
-            }
-            let moved = apart(&plant.nodes, &old.nodes);
-            compared += 1;
-            largest_m = largest_m.max(moved);
-            if moved > REST_M_PER_FRAME {
-                let most = restless.entry(*key).or_default();
-                *most = most.max(moved);
-            }
-        }
-        before = now;
-    }
-    let depth_m = rig.seen.depth_m;
-    let strain = rig.seen.strain;
-    let text = format!(
-        "{largest_m:.1e} m per frame (limit {REST_M_PER_FRAME:.0e}), strain {strain:.4} (limit \
-         {REST_STRAIN}), {depth_m:.1e} m deep, {} of {} plants restless",
-        restless.len(),
-        before.len(),
-    );
-    ensure(compared > 1000, || {
-        format!("only {compared} plants seen at rest")
-    })?;
-    let shallow = setting.collider != Collider::Analytic || depth_m <= REST_DEPTH_M;
-    ensure(strain <= REST_STRAIN, || format!("strained: {text}"))?;
-    ensure(shallow, || format!("sunk in: {text}"))?;
-    ensure(largest_m <= REST_M_PER_FRAME, || {
-        format!("restless: {text}")
-    })?;
-    rig.nothing_is_inside()?;
-    Ok(text)
-}
-
-/// Runs until no body has moved for a tenth of a second, and gives the tick since which they stand.
-fn run_until_still(rig: &mut Rig) -> Result<u32, Failed> {
-    let mut still = 0;
-    while still < SECOND_TICKS / 10 {
-        rig.tick()?;
-        let links = rig.meadow.bodies.links();
-        let moves = links.iter().any(|link| link.from != link.to);
-        still = if moves { 0 } else { still + 1 };
-        ensure(rig.meadow.ticks < 20 * SECOND_TICKS, || {
-            "the body does not come to rest within 20 s".into()
-        })?;
-    }
-    Ok(rig.meadow.ticks - still)
-}
 
 /// Where a body is put so that a chosen vertex lies in one of its degenerate places, in the body's
 /// coordinates.

@@ -19,6 +19,7 @@ mod motion;
 mod order;
 mod place;
 mod recovery;
+mod rest;
 mod rig;
 mod shapes;
 mod springs;
@@ -60,9 +61,12 @@ const fn case(name: &'static str, colliders: &'static [Collider], check: Check) 
 }
 
 const CASES: &[Case] = &[
-    case("rest_laid", BOTH, contact::rest_laid),
-    case("rest_dropped", BOTH, contact::rest_dropped),
-    case("rest_rolled", BOTH, contact::rest_rolled),
+    case("rest_laid", BOTH, rest::rest_laid),
+    case("rest_dropped", BOTH, rest::rest_dropped),
+    case("rest_rolled", BOTH, rest::rest_rolled),
+    case("rest_pushed", BOTH, rest::rest_pushed),
+    case("rest_between", BOTH, rest::rest_between),
+    case("rest_shapes", BOTH, rest::rest_shapes),
     case("degenerate_point", BOTH, contact::degenerate_point),
     case(
         "degenerate_point_put_back",

@@ -2,17 +2,18 @@
 
 #![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
 
+mod analytic;
 mod bounds;
+mod convergence;
 mod pressed;
 
 use std::collections::BTreeMap;
 
 use sward::base::{Real, Vec3};
-use sward::run::compare::{Comparison, Difference, touched_plants};
-use sward::run::{Engine, Timeline};
+use sward::run::Timeline;
 use sward::scene::{LoadedScene, parse_scene};
+use sward::sim::contact::ON_SURFACE_M;
 use sward::sim::measure::{self, Standing};
-use sward::sim::reference::refined;
 use sward::sim::state_hash::state_hash;
 use sward::sim::{Grass, Meadow, tick};
 
@@ -175,10 +176,22 @@ fn nothing_is_left_inside_and_nothing_is_stretched() {
             let worst = now.worst;
             assert!(worst.depth_m <= worst.limit_m, "{collider}: {worst:?}");
             assert!(now.max_strain <= 0.02, "{collider}: {}", now.max_strain);
+            // A closed form sees whatever is deeper than a rounding; the silhouettes of a cube are
+            // known to a texel.
+            let unseen_m = if collider == "cube" {
+                TEXEL_M
+            } else {
+                f64::from(ON_SURFACE_M)
+            };
+            let missed_m = now.missed_m;
+            assert!(missed_m <= unseen_m, "{collider}: {missed_m} m");
             assert_eq!(now.not_finite, 0);
         }
     }
 }
+
+/// Of the depth cube of the larger body of [`ROLL`], in metres: 64 over 0.502 m.
+const TEXEL_M: f64 = 0.502 / 64.0;
 
 /// What single precision costs in a scene: the kernels in f32 beside f64 on the same bodies.
 #[derive(Default)]
@@ -186,12 +199,13 @@ struct Cost {
     squares: f64,
     nodes: u32,
     plants: usize,
-    /// Plants that are touched on one side only, or slid to another side of a body.
-    flipped: usize,
+    /// Plants that are touched in one float only, or went another way.
+    strayed: usize,
 }
 
-/// A plant is on another side if a node stands further from its twin's than a blade's segment is long.
-const FLIPPED_M: f64 = 0.05;
+/// A plant went another way where a node stands farther from its twin's than this, ten times the limit:
+/// where a blade folds or slips off, less than rounding may decide which way. Such plants are counted.
+const STRAYED_M: f64 = 1e-3;
 
 impl Cost {
     fn of(loaded: &LoadedScene, ticks: u32) -> Self {
@@ -210,11 +224,11 @@ impl Cost {
                 |(&a, &b): (&Vec3<f32>, &Vec3<f64>)| (Vec3::<f64>::of(a.to_f64()) - b).length();
             let off: Option<Vec<f64>> = nodes.map(|nodes| nodes.map(off).collect());
             match off {
-                Some(off) if off.iter().all(|&d| d <= FLIPPED_M) => {
+                Some(off) if off.iter().all(|&d| d <= STRAYED_M) => {
                     cost.squares += off.iter().map(|d| d * d).sum::<f64>();
                     cost.nodes += off.len() as u32;
                 }
-                _ => cost.flipped += 1,
+                _ => cost.strayed += 1,
             }
         }
         cost
@@ -225,25 +239,62 @@ impl Cost {
     }
 }
 
-/// A ball rolls, a capsule is led along and turned: on flat and on rolling ground, met by their depth
-/// cubes and by their closed forms. A tenth of a millimetre is the limit between engines too.
+/// What single precision may cost in a contact: metres, root mean square, and the share of the touched
+/// plants that may go another way.
+struct Allowed {
+    body: &'static str,
+    collider: &'static str,
+    ground: &'static str,
+    rms_m: f64,
+    strayed: f64,
+}
+
+/// A tenth of a millimetre is the limit between engines too.
+const fn precise(body: &'static str, collider: &'static str, ground: &'static str) -> Allowed {
+    Allowed {
+        body,
+        collider,
+        ground,
+        rms_m: 1e-4,
+        strayed: 0.01,
+    }
+}
+
+/// For the box that falls flat.
+const fn pressed(collider: &'static str) -> Allowed {
+    Allowed {
+        strayed: 4.5 / 72.0,
+        ..precise("box", collider, FLAT)
+    }
+}
+
+/// A ball rolls, a capsule is led along and turned, a box falls: on flat and on rolling ground, met by
+/// their depth cubes and by their closed forms.
 ///
-/// Two contacts are left out, because which way a blade gives there is decided by less than rounding,
-/// and what is measured is how far the ways lie apart: a box that lands flat on its blades (3.6 to
-/// 5.8 mm RMS, 1 to 4 of 72 plants flipped), and the ball's cube on the creases of rolling ground
-/// (0.28 mm).
+/// Flat under a box lie blades that were pressed down head on: there less than rounding decides which way
+/// a blade gives: three plants of 72 go another way there, by 1 to 29 mm, and the others are 0.07 mm apart.
+/// One of 134 does under the stick's cube on rolling ground, by 3.4 mm; all others are within 0.2 mm.
 #[test]
 fn single_precision_stays_within_a_tenth_of_a_millimetre() {
     let mut over = Vec::new();
-    for (body, collider, ground) in [
-        ("ball", "cube", FLAT),
-        ("ball", "analytic", FLAT),
-        ("ball", "analytic", ROLLING),
-        ("stick", "cube", FLAT),
-        ("stick", "analytic", FLAT),
-        ("stick", "cube", ROLLING),
-        ("stick", "analytic", ROLLING),
+    for allowed in [
+        precise("ball", "cube", FLAT),
+        precise("ball", "analytic", FLAT),
+        precise("ball", "analytic", ROLLING),
+        precise("stick", "cube", FLAT),
+        precise("stick", "analytic", FLAT),
+        precise("stick", "cube", ROLLING),
+        precise("stick", "analytic", ROLLING),
+        precise("ball", "cube", ROLLING),
+        pressed("cube"),
+        pressed("analytic"),
     ] {
+        let Allowed {
+            body,
+            collider,
+            ground,
+            ..
+        } = allowed;
         let text = PRECISE
             .replace("GROUND", ground)
             .replace("COLLIDER", collider);
@@ -251,14 +302,15 @@ fn single_precision_stays_within_a_tenth_of_a_millimetre() {
         loaded.scene.bodies.retain(|b| b.name == body);
         let cost = Cost::of(&loaded, 130);
         let what = format!(
-            "{body} by {collider} on {ground}: rms {:.1e} m over {} nodes, {} of {} plants flipped",
+            "{body} by {collider} on {ground}: rms {:.1e} m over {} nodes, {} of {} plants strayed",
             cost.rms_m(),
             cost.nodes,
-            cost.flipped,
+            cost.strayed,
             cost.plants
         );
         println!("{what}");
-        if cost.nodes < 1000 || cost.rms_m() > 1e-4 || cost.flipped * 100 > cost.plants {
+        let strayed = cost.strayed as f64 / cost.plants.max(1) as f64;
+        if cost.nodes < 400 || cost.rms_m() > allowed.rms_m || strayed > allowed.strayed {
             over.push(what);
         }
     }
@@ -268,7 +320,7 @@ fn single_precision_stays_within_a_tenth_of_a_millimetre() {
 const FLAT: &str = "Flat(size_m: (8, 6))";
 const ROLLING: &str = "Rolling(size_m: (8, 6), amplitude_m: 0.1, wavelength_m: 7.0)";
 
-/// Two bodies that meet grass in two ways.
+/// Three bodies that meet grass in three ways.
 const PRECISE: &str = r#"(
     duration_s: 2.0,
     terrain: (ground: GROUND),
@@ -279,89 +331,7 @@ const PRECISE: &str = r#"(
         (name: "stick", shape: Capsule(radius_m: 0.08, length_m: 0.6), collider: COLLIDER,
          above_ground: true, motion: Path(waypoints: [(at_s: 0, position_m: (-1.5, 0.3, -1)),
          (at_s: 1.2, position_m: (0.5, 0.2, -1), rotation_deg: (0, 60, 80))])),
+        (name: "box", shape: Box(size_m: (0.5, 0.3, 0.4)), position_m: (1.2, 0.7, 0.9),
+         above_ground: true, collider: COLLIDER),
     ],
 )"#;
-
-/// Sub-steps of the reference in one of the scene's, and the finest, which is taken for true.
-const LEVELS: [u32; 4] = [1, 2, 4, 8];
-const FINEST: u32 = 32;
-
-/// A ball is led through 2 m of grass at 0.5 m/s, its middle at a height.
-fn led_ball(middle_m: f64) -> LoadedScene {
-    scene(&format!(
-        r#"(
-        terrain: (ground: Flat(size_m: (4, 2))),
-        grass: (density_per_m2: 128, species: [(name: "meadow grass", height_m: (0.38, 0.42),
-            stiffness: (90, 160), lean_deg: (2, 12))]),
-        wind: (strength: 0, gust: 0, flutter: 0),
-        bodies: [(name: "ball", shape: Ball(radius_m: 0.15), motion: Path(waypoints: [
-            (at_s: 0, position_m: (-1, {middle_m:?}, 0.1)),
-            (at_s: 4, position_m: (1, {middle_m:?}, 0.1), rotation_deg: (0, 0, -764))]))],
-    )"#
-    ))
-}
-
-/// How far the reference with so many sub-steps is from the finest, at each level.
-fn distances_from_finest(loaded: &LoadedScene) -> Vec<Difference> {
-    // One sweep in each sub-step, so that the length of a step alone is refined.
-    const ONE_SWEEP: f64 = 1e6;
-    let lane = |steps: u32| {
-        let mut meadow = meadow(loaded);
-        meadow.scene.solver = refined(&loaded.scene.solver, steps, ONE_SWEEP);
-        (meadow, Engine::Reference(Box::default()))
-    };
-    let mut finest = lane(FINEST);
-    let mut coarse = LEVELS.map(lane);
-    let mut comparisons = LEVELS.map(|_| Comparison::default());
-    let advanced = |(meadow, engine): &mut (Meadow, Engine), seconds: f64| {
-        // Half a sub-step forgives the rounding of two ways to count time.
-        while meadow.time_s() + 0.5 * meadow.scene.solver.substep_s < seconds {
-            engine.tick(meadow).expect("a tick");
-        }
-        touched_plants(meadow, engine).expect("plants of the processor")
-    };
-    for frame in 1..=130 {
-        let seconds = f64::from(frame) / 30.0;
-        let truth = advanced(&mut finest, seconds);
-        for (lane, comparison) in coarse.iter_mut().zip(&mut comparisons) {
-            comparison.frame(&advanced(lane, seconds), &truth);
-        }
-    }
-    let field = &finest.0.field;
-    comparisons.iter().map(|c| c.finish(field)).collect()
-}
-
-/// The reference engine converges as its method promises. A contact is found, a spring acts and a
-/// plant is let go at the end of a step of length h: each errs by c·h, so that the order is 1. Two
-/// steps differ by c·|h − h′| where their errors go the same way, and by c·√(h² + h′²) where they
-/// have nothing to do with each other, since it is by chance where in a step a contact begins.
-/// Against h/32, from h to h/8, the distance then falls to between 3/31 and 1/7.8, an observed
-/// order of 1.12 to 0.99. A method of order ½ would show 0.74 at most, one of order 2 at least 2.
-///
-/// That holds where a contact moves a plant by as much as the body moves. A blade that is folded
-/// between ball and ground amplifies, and which way it folds may turn on less than a step: of those
-/// it is asked only that every finer step is nearer.
-#[test]
-fn the_reference_converges_at_first_order() {
-    for (what, middle_m, order_range) in [
-        ("pushed aside", 0.25, Some(0.75..=1.4)),
-        ("rolled over", 0.15, None),
-    ] {
-        let found = distances_from_finest(&led_ball(middle_m));
-        let rms_m: Vec<f64> = found.iter().map(|d| d.pose_rms_m).collect();
-        let halvings = f64::from(LEVELS[3] / LEVELS[0]).log2();
-        let order = (rms_m[0] / rms_m[3]).log2() / halvings;
-        println!(
-            "{what}: rms {:.3?} mm at {LEVELS:?} sub-steps against {FINEST}, order {order:.2}, {:?} \
-             of {} plants on another side",
-            rms_m.iter().map(|m| m * 1e3).collect::<Vec<_>>(),
-            found.iter().map(|d| d.side_flips).collect::<Vec<_>>(),
-            found[0].touched_plants
-        );
-        assert!(found[0].touched_plants > 60, "{what}: too few plants");
-        assert!(rms_m.is_sorted_by(|a, b| a > b), "{what}: {rms_m:?}");
-        if let Some(range) = order_range {
-            assert!(range.contains(&order), "{what}: order {order}");
-        }
-    }
-}

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use super::bench_flight::FlightArguments;
 use super::outputs::make_folder;
-use super::{bench_popping, bench_submission, bench_terrain, scene_file};
+use super::{bench_flight, bench_popping, bench_submission, bench_terrain, scene_file};
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
 use crate::app::progress::Progress;
@@ -33,6 +34,8 @@ pub struct Arguments {
     /// End with exit code 1 if a promise is not kept
     #[arg(long)]
     pub(super) check: bool,
+    #[command(flatten)]
+    pub(super) flight: FlightArguments,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -47,6 +50,9 @@ enum Bench {
     Submission,
     /// How much pictures of a slow camera change because plants come and go; needs a graphics adapter
     Popping,
+    /// The flight of P15 section 4 over 20 km²: time of a frame, load, seeding by the size of clusters;
+    /// needs a graphics adapter
+    Flight,
 }
 
 /// Scene of a million blades.
@@ -58,6 +64,10 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
         let text = "bench terrain runs no engine: leave --engine and --require-gpu out";
         return Err(Failure::Usage(text.into()));
     }
+    if !matches!(arguments.what, Bench::Flight) && arguments.flight.is_given() {
+        let text = "only bench flight takes --quick and --height-map: leave them out";
+        return Err(Failure::Usage(text.into()));
+    }
     // A place that cannot be written to is told before time is spent on measuring.
     if let Some(folder) = &arguments.out {
         make_folder(folder)?;
@@ -65,6 +75,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     match arguments.what {
         Bench::Tiles => run_tiles(arguments, out),
         Bench::Terrain => bench_terrain::run(arguments, out),
+        Bench::Flight => bench_flight::run(arguments, out),
         Bench::Popping => bench_popping::run(arguments, out),
         Bench::Submission => bench_submission::run(arguments, out),
     }

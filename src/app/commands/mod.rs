@@ -1,6 +1,7 @@
 //! The commands: one file each, with its arguments and what it prints.
 
 pub mod bench;
+mod bench_flight;
 mod bench_popping;
 mod bench_submission;
 mod bench_terrain;

@@ -124,6 +124,21 @@ impl Lane {
         plants.map_err(|error| self.error(error))
     }
 
+    /// Every plant of the field, resting ones included.
+    ///
+    /// # Errors
+    ///
+    /// The device's.
+    pub fn all_plants(&mut self) -> Result<Plants, RunError> {
+        let mut plants = Plants::new();
+        for tile in 0..self.meadow.field.grid.tile_count() {
+            let found = self.engine.of_tile(&self.meadow, tile);
+            let found = found.map_err(|error| self.error(error))?;
+            plants.extend(found.into_iter().map(|p| ((tile, p.place), p)));
+        }
+        Ok(plants)
+    }
+
     /// An error of this run.
     pub fn error(&self, source: impl Into<TickError>) -> RunError {
         RunError::new(&self.name, source)

@@ -10,7 +10,7 @@ use crate::base::statistics::median;
 use crate::gpu::knows_method;
 use crate::run::compare::{Comparison, Plants};
 use crate::run::methods::NamedMethod;
-use crate::run::scenario::{Device, RunError};
+use crate::run::scenario::RunError;
 use crate::run::watch::Watch;
 use crate::scene::{LoadedScene, Solver};
 
@@ -22,8 +22,8 @@ pub const MOST_FLIPS: f64 = 0.01;
 pub const MOST_RMS_M: f64 = 0.010;
 
 /// Runs methods on a scene in turns, frame by frame: each on the cpu engine for the total error and
-/// the time, with the same kernels in `f64` for the error of the method alone, and on a graphics
-/// device where the plan asks for it and it knows the method. The default is timed with them in every frame.
+/// the time, and where the plan asks for it with the same kernels in `f64` for the error of the method
+/// alone, and on a graphics device that knows the method. The default is timed with them in every frame.
 /// `progress` gets the share done.
 ///
 /// # Errors
@@ -39,7 +39,7 @@ pub fn measure(
     let mut default = Timed::new(Lane::new(loaded, &loaded.scene.solver, Kind::Single)?);
     let points = methods
         .iter()
-        .map(|&method| Point::new(loaded, method, context.device_of(method.name)));
+        .map(|&method| Point::new(loaded, method, context));
     let mut points = points.collect::<Result<Vec<Point>, RunError>>()?;
     let count = frames(loaded.scene.duration_s);
     for frame in 0..count {
@@ -88,7 +88,7 @@ struct Point {
     method: &'static NamedMethod,
     solver: Solver,
     cpu: Timed,
-    double: Lane,
+    double: Option<Lane>,
     gpu: Option<Lane>,
     watch: Watch,
     total: Comparison,
@@ -101,17 +101,19 @@ impl Point {
     fn new(
         loaded: &LoadedScene,
         method: &'static NamedMethod,
-        gpu: Option<&Device>,
+        context: &Context<'_>,
     ) -> Result<Self, RunError> {
         let mut solver = loaded.scene.solver.clone();
         method.apply(&mut solver);
-        let gpu = gpu.filter(|_| knows_method(&solver.method));
-        let device = |device| Lane::new(loaded, &solver, Kind::Device(device));
+        let device = context.device_of(method.name);
+        let device = device.filter(|_| knows_method(&solver.method));
+        let lane = |kind| Lane::new(loaded, &solver, kind);
+        let double = context.splits(method.name).then_some(Kind::Double);
         Ok(Self {
             method,
             cpu: Timed::new(Lane::new(loaded, &solver, Kind::Single)?),
-            double: Lane::new(loaded, &solver, Kind::Double)?,
-            gpu: gpu.map(device).transpose()?,
+            double: double.map(lane).transpose()?,
+            gpu: device.map(Kind::Device).map(lane).transpose()?,
             solver,
             watch: Watch::default(),
             total: Comparison::default(),
@@ -128,16 +130,20 @@ impl Point {
         let watched = self.watch.frame(&cpu.meadow, &mut cpu.engine);
         watched.map_err(|error| cpu.error(error))?;
         let plants = cpu.plants()?;
-        self.double.advance_to(end_s)?;
-        let exact = self.double.plants()?;
+        if let Some(double) = &mut self.double {
+            double.advance_to(end_s)?;
+            let exact = double.plants()?;
+            self.precision.frame(&plants, &exact);
+            if let Some(truth) = truth {
+                self.of_method.frame(&exact, truth);
+            }
+        }
         if let Some(gpu) = &mut self.gpu {
             gpu.advance_to(end_s)?;
             self.rounding.frame(&gpu.plants()?, &plants);
         }
-        self.precision.frame(&plants, &exact);
         if let Some(truth) = truth {
             self.total.frame(&plants, truth);
-            self.of_method.frame(&exact, truth);
         }
         Ok(())
     }
@@ -176,8 +182,8 @@ impl Point {
             strain: watch.max_strain,
             not_finite: watch.not_finite,
             rounding_rms_m: self.gpu.as_ref().and_then(|_| rms_m(&self.rounding)),
-            precision_rms_m: rms_m(&self.precision),
-            method_rms_m: rms_m(&self.of_method),
+            precision_rms_m: self.double.as_ref().and_then(|_| rms_m(&self.precision)),
+            method_rms_m: self.double.as_ref().and_then(|_| rms_m(&self.of_method)),
         }
     }
 }

@@ -7,11 +7,14 @@
 
 mod blades;
 mod cost;
+mod independent;
 mod lane;
 mod measure;
 mod plan;
 mod plot;
 mod relative;
+mod rod;
+pub mod rods;
 pub mod scenes;
 mod store;
 mod summary;
@@ -22,6 +25,7 @@ use std::io;
 
 pub use blades::Blades;
 pub use cost::{CostRow, SCENE as COST_SCENE};
+pub use independent::Independent;
 pub use plan::{
     Context, LeftOut, Plan, Planned, all_methods, cost_methods, has_free_bodies,
     hash_of_this_program, quick_methods, why_not_comparable,
@@ -36,7 +40,7 @@ use super::report::Adapter;
 use super::scenario::{Device, RunError};
 use super::spring_clamp::SpringClamp;
 use crate::field::blade_table::TableError;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneError};
 use truth::Truth;
 
 /// Name under which the distance of two references is listed.
@@ -59,6 +63,8 @@ pub struct Report {
     /// Cost at equal sub-steps, where the plan has its scene.
     pub cost: Vec<CostRow>,
     pub blades: Option<Blades>,
+    /// Measured where the blades are.
+    pub independent: Option<Independent>,
 }
 
 /// The points of a scene.
@@ -101,6 +107,8 @@ pub enum AccuracyError {
     Run(#[from] RunError),
     #[error(transparent)]
     Blades(#[from] TableError),
+    #[error(transparent)]
+    Scene(#[from] SceneError),
     #[error("cannot write a measured point: {0}")]
     Store(#[from] io::Error),
 }
@@ -137,12 +145,14 @@ pub fn run(
         None => Vec::new(),
     };
     let blades = plan.blades.then(Blades::measure).transpose()?;
+    let independent = plan.blades.then(Independent::measure).transpose()?;
     Ok(Report {
         machine,
         adapter,
         scenes,
         cost,
         blades,
+        independent,
     })
 }
 
@@ -237,6 +247,7 @@ mod tests {
             scenes,
             cost: Vec::new(),
             blades: None,
+            independent: None,
         }
     }
 

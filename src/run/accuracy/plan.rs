@@ -13,27 +13,31 @@ use crate::run::spring_clamp::SpringClamp;
 use crate::scene::{LoadedScene, Motion, Scene, Solver, to_ron};
 
 /// Methods that the quick report leaves out: inner points of curves whose ends it has.
-const NOT_QUICK: [&str; 8] = [
+const NOT_QUICK: [&str; 18] = [
     "cube-128",
+    "masked-16",
+    "nearest-16",
     "bilinear-16",
+    "bilinear-256",
+    "body-cube-256",
+    "voxels-32",
     "voxels-64",
-    "rounds-2",
-    "segments-6",
+    "substep-120",
+    "substep-240",
     "grass-steps-2",
+    "sweep-1/2",
+    "rounds-2",
+    "rounds-12",
+    "segments-6",
     "table-32",
+    "table-64",
     "table-256",
 ];
 
-/// Methods whose rounding the quick report measures: the default, closed forms, sub-steps and sweeps at
-/// either end. A software adapter takes several times as long for a method as the processor.
-const QUICK_ON_DEVICE: [&str; 6] = [
-    "default",
-    "analytic",
-    "substep-30",
-    "grass-steps-4",
-    "one-sweep",
-    "segments-4",
-];
+/// Methods whose error the quick report splits: the default, closed forms, and long sub-steps.
+/// A run in `f64` doubles what a method takes, and a software adapter takes several times as long as the
+/// processor.
+const QUICK_SPLIT: [&str; 3] = ["default", "analytic", "substep-30"];
 
 /// Scenes, and the methods that are run on each.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +47,7 @@ pub struct Plan {
     pub blades: bool,
     /// Whatever tells this program from another: points of another one are not comparable.
     pub program: u64,
-    /// Whether rounding is measured of a few methods only.
+    /// Whether rounding and precision are measured of a few methods only.
     pub quick: bool,
 }
 
@@ -142,7 +146,7 @@ impl Planned {
 pub fn why_not_comparable(scene: &Scene, method: &NamedMethod) -> Option<&'static str> {
     if !method.keeps_blades(&scene.solver) {
         Some(
-            "its blades are other ones, whose rest the report's section on segments and root compares",
+            "its blades are other ones, whose rest the report's sections on resting blades compare",
         )
     } else if has_free_bodies(scene) && !keeps_body_step(scene, method) {
         Some("it steps the bodies otherwise, and free bodies would go another way")
@@ -194,10 +198,14 @@ pub struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
+    /// Whether a method's error is split into rounding, precision and the method's own.
+    pub fn splits(&self, name: &str) -> bool {
+        !self.quick || QUICK_SPLIT.contains(&name)
+    }
+
     /// The device that a method's rounding is measured on, if it is.
     pub fn device_of(&self, name: &str) -> Option<&'a Device> {
-        self.gpu
-            .filter(|_| !self.quick || QUICK_ON_DEVICE.contains(&name))
+        self.gpu.filter(|_| self.splits(name))
     }
 
     /// The key of a point: the same for the same program, scene, settings and device.
@@ -209,10 +217,13 @@ impl<'a> Context<'a> {
         // A scene that was read can be written; one that could not would only share its key.
         let scene = to_ron(&loaded.scene).unwrap_or_default();
         let device = self.device_of(name).and_then(Device::gpu).map(Adapter::of);
+        let splits = self.splits(name);
         let assets = &loaded.assets.file_hashes;
         let mut hash = Hash64::default();
         hash.word(self.program);
-        hash.bytes(format!("{name}\n{scene}\n{solver:?}\n{device:?}\n{assets:?}").as_bytes());
+        hash.bytes(
+            format!("{name}\n{scene}\n{solver:?}\n{splits}\n{device:?}\n{assets:?}").as_bytes(),
+        );
         format!("{:016x}", hash.value())
     }
 }
@@ -238,7 +249,7 @@ pub fn hash_of_this_program() -> io::Result<u64> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::run::methods::ROOT_PAPER;
+    use crate::run::methods::{LEAN_0, ROOT_PAPER};
 
     pub fn loaded() -> LoadedScene {
         crate::scene::parse_scene(
@@ -264,7 +275,7 @@ pub(super) mod tests {
             assert!(method(name).is_some(), "{name}");
         }
         assert_eq!(quick_methods().len() + NOT_QUICK.len(), METHODS.len());
-        for name in QUICK_ON_DEVICE {
+        for name in QUICK_SPLIT {
             assert!(
                 quick_methods().iter().any(|method| method.name == name),
                 "{name}"
@@ -278,7 +289,7 @@ pub(super) mod tests {
             planned.left_out.iter().map(|out| out.method).collect()
         };
         let led = Planned::new(loaded(), &all_methods());
-        assert_eq!(names(&led), [ROOT_PAPER]);
+        assert_eq!(names(&led), [ROOT_PAPER, LEAN_0, "lean-5"]);
         let mut free = loaded();
         free.scene.bodies[0].motion = Motion::Free;
         let left_out = Planned::new(free, &all_methods());

@@ -30,6 +30,9 @@ pub fn write_markdown(report: &Report, plots: bool, out: &mut impl Write) -> io:
     write_summary(report, &summary, plots, out)?;
     write_split(&summary, out)?;
     write_cost(report, out)?;
+    if let Some(independent) = &report.independent {
+        independent.write(out)?;
+    }
     if let Some(blades) = &report.blades {
         blades.write(out)?;
     }
@@ -95,9 +98,18 @@ fn write_choice(
     out: &mut impl Write,
 ) -> io::Result<()> {
     let half_blade_m = report.half_blade_m();
+    let blurred = names_of_blurred(&report.whole_scenes());
+    let not_judged = if blurred.is_empty() {
+        String::new()
+    } else {
+        format!(
+            " Poses and sides of {blurred} are not judged: two references are farther apart there than \
+             the limit."
+        )
+    };
     writeln!(
         out,
-        "## Which to choose\n\n{}\n\n\
+        "## Which to choose\n\n{}{not_judged}\n\n\
          | need | method | times the default | ms per s | worst RMS, mm | limits missed | as cheap, \
          for all that is known |\n|---|---|---|---|---|---|---|",
         verdict_on_default(summary, half_blade_m)
@@ -143,6 +155,12 @@ fn write_choice(
     writeln!(out)
 }
 
+/// The scenes whose references are too far apart to judge poses and sides, in words.
+fn names_of_blurred(scenes: &[&SceneReport]) -> String {
+    let blurred = scenes.iter().filter(|scene| !scene.floor.judges_poses());
+    quoted(blurred.map(|scene| scene.name.as_str()))
+}
+
 fn write_summary(
     report: &Report,
     summary: &[MethodSummary],
@@ -150,12 +168,10 @@ fn write_summary(
     out: &mut impl Write,
 ) -> io::Result<()> {
     let whole = report.whole_scenes();
-    let blurred = whole.iter().filter(|scene| !scene.floor.judges_poses());
-    let blurred: Vec<&str> = blurred.map(|scene| scene.name.as_str()).collect();
+    let blurred = names_of_blurred(&whole);
     let names = quoted(whole.iter().map(|scene| scene.name.as_str()));
     write!(out, "## Every method\n\nOver {names}.")?;
     if !blurred.is_empty() {
-        let blurred = quoted(blurred.into_iter());
         write!(
             out,
             " Errors leave out {blurred}: two references are farther apart there than the limit."
@@ -195,12 +211,13 @@ fn write_split(summary: &[MethodSummary], out: &mut impl Write) -> io::Result<()
          Root mean square over these scenes, in millimetres. Rounding is the gpu engine against the \
          cpu engine, precision the cpu engine in `f32` against `f64`, and the method's own error that \
          of `f64` against the reference. The three do not add up to the whole error: they are lengths \
-         of differences that may point anywhere. An empty rounding: the passes of the device do not \
-         know the method, the quick form leaves it out, or there is no adapter.\n\n\
+         of differences that may point anywhere. The quick form splits the error of \
+         few methods. An empty rounding: the passes of the device do not know the method, or there is \
+         no adapter.\n\n\
          | method | rounding (gpu − cpu) | precision (f32 − f64) | method (f64 − reference) |\n\
          |---|---|---|---|"
     )?;
-    for m in summary {
+    for m in summary.iter().filter(|m| m.precision_m.is_some()) {
         let parts = [m.rounding_m, m.precision_m, m.method_m].map(small_mm);
         let [rounding, precision, of_method] = parts;
         writeln!(

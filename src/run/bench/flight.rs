@@ -1,5 +1,13 @@
 //! The flight of P15 section 4: from high above down to the grass and up again.
 
+pub mod experiment;
+pub mod ground;
+pub mod plot;
+pub mod seeding;
+pub mod traversal;
+
+pub use experiment::{FlightBench, FlightRequest, bench_flight};
+
 use crate::base::Vec3;
 use crate::render::View;
 use crate::terrain::HeightGrid;

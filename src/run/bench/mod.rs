@@ -9,6 +9,7 @@ pub mod submission;
 pub mod terrain;
 pub mod tiles;
 
+pub use flight::{FlightBench, FlightRequest, bench_flight};
 pub use machine::Machine;
 pub use popping::{PoppingBench, bench_popping};
 pub use still_field::DrawBenchError;

@@ -22,7 +22,7 @@ pub enum DrawBenchError {
     Render(#[from] RenderError),
 }
 
-/// The default grass on a ground, with no tile awake.
+/// A field's plants, with no tile awake.
 pub(super) struct StillField {
     pub field: Field,
     pub wind: WindNow,
@@ -32,7 +32,7 @@ pub(super) struct StillField {
 }
 
 impl StillField {
-    /// `picture` is the size of what is drawn, in pixels.
+    /// The default grass on a ground. `picture` is the size of what is drawn, in pixels.
     pub fn new(
         gpu: &Gpu,
         terrain: &Terrain,
@@ -40,13 +40,25 @@ impl StillField {
         wind: WindNow,
         picture: [u32; 2],
     ) -> Result<Self, DrawBenchError> {
+        let map = ColourMap::of_patches(terrain, &ground);
         let field = Field::new(ground, &Grass::default(), &Solver::default())?;
-        let mut renderer = Renderer::new(gpu, PictureTarget::FORMAT, picture)?;
         let look = GroundLook {
-            map: &ColourMap::of_patches(terrain, &field.ground),
+            map: &map,
             soil_rgb: terrain.soil_rgb,
         };
-        renderer.set_scene(gpu, &field, &look, &[])?;
+        Self::of(gpu, field, &look, wind, picture)
+    }
+
+    /// A field that is laid out, with the look of its ground.
+    pub fn of(
+        gpu: &Gpu,
+        field: Field,
+        look: &GroundLook<'_>,
+        wind: WindNow,
+        picture: [u32; 2],
+    ) -> Result<Self, DrawBenchError> {
+        let mut renderer = Renderer::new(gpu, PictureTarget::FORMAT, picture)?;
+        renderer.set_scene(gpu, &field, look, &[])?;
         Ok(Self {
             wind,
             nodes: Buffer::new(gpu, "no nodes", 1, wgpu::BufferUsages::STORAGE)?,

@@ -139,7 +139,7 @@ impl Rig {
                     let seeded = self.0.renderer.seeded_triangles(gpu)?;
                     let drawn = self.0.renderer.drawn_plants(gpu)?;
                     sums[way].plants += drawn.iter().map(|form| form.plants as f64).sum::<f64>();
-                    sums[way].places += seeded.places as f64;
+                    sums[way].places += seeded.clusters as f64;
                     if way == 0 {
                         exact.clone_from(&seeded.counts);
                     }

@@ -23,7 +23,7 @@ use crate::terrain::{TerrainError, height_grid};
 
 /// Sides of the terrains, in metres: 1, 4, 20 and 80 km², the latter two less what keeps the
 /// samples of all in the same places.
-const SIDES_M: [f32; 4] = [1000.0, 2000.0, 4470.0, 8940.0];
+pub(super) const SIDES_M: [f32; 4] = [1000.0, 2000.0, 4470.0, 8940.0];
 const SPACING_M: f32 = 5.0;
 /// Picture in which errors are counted.
 const PICTURE: [u32; 2] = [1920, 1080];
@@ -31,8 +31,8 @@ const PICTURE: [u32; 2] = [1920, 1080];
 const REPEATS: u32 = 3;
 /// Longest mean traversal in the flight's worst second, and most that it may grow with the
 /// terrain, that `--check` lets pass.
-const MOST_TRAVERSAL_MS: f64 = 2.0;
-const MOST_GROWTH: f64 = 1.25;
+pub(super) const MOST_TRAVERSAL_MS: f64 = 2.0;
+pub(super) const MOST_GROWTH: f64 = 1.25;
 
 /// Results of the whole bench.
 #[derive(Clone, Debug, Serialize)]
@@ -100,7 +100,7 @@ pub struct Cost {
 }
 
 impl Cost {
-    fn of(frames_ms: &[f64]) -> Self {
+    pub(super) fn of(frames_ms: &[f64]) -> Self {
         let seconds = frames_ms.chunks(FRAMES_PER_S as usize);
         let means = seconds.map(|second| second.iter().sum::<f64>() / second.len() as f64);
         Self {
@@ -281,7 +281,7 @@ impl<'a> Flight<'a> {
     }
 }
 
-fn shortest_ms(mut work: impl FnMut()) -> f64 {
+pub(super) fn shortest_ms(mut work: impl FnMut()) -> f64 {
     let mut shortest = f64::INFINITY;
     for _ in 0..REPEATS {
         let started = Instant::now();
