@@ -301,16 +301,16 @@ pub const METHODS: &[NamedMethod] = &[
         "table-16",
         "blade table",
         "resting blades from 16 × 8 entries over stiffness and lean",
-        |s| s.blade_table = [16, 8],
+        |s| s.blade_table = Some([16, 8]),
     ),
     named("table-32", "blade table", "32 × 16 entries", |s| {
-        s.blade_table = [32, 16]
+        s.blade_table = Some([32, 16])
     }),
     named("table-64", "blade table", "64 × 32 entries", |s| {
-        s.blade_table = [64, 32]
+        s.blade_table = Some([64, 32])
     }),
     named("table-256", "blade table", "256 × 128 entries", |s| {
-        s.blade_table = [256, 128]
+        s.blade_table = Some([256, 128])
     }),
     named(
         ROOT_PAPER,

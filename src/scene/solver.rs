@@ -46,9 +46,11 @@ pub struct Solver {
     /// spacing is halved until it is not longer, 12 times at most.
     #[schemars(range(min = limits::SEEDING_CELL.min, max = limits::SEEDING_CELL.max))]
     pub seeding_cell_m: f32,
-    /// Entries of the table of resting blade shapes along stiffness and lean, 2 to 512 each.
-    #[schemars(inner(range(min = limits::BLADE_TABLE.min, max = limits::BLADE_TABLE.max)))]
-    pub blade_table: [u32; 2],
+    /// Entries of the table of resting blade shapes along stiffness and lean, 2 to 512 each. Without
+    /// it they are as many as keep every blade within a thousandth of its length: 128 × 64, or twice
+    /// each where some blades hardly lean and are soft enough to bend all the same.
+    #[schemars(inner(inner(range(min = limits::BLADE_TABLE.min, max = limits::BLADE_TABLE.max))))]
+    pub blade_table: Option<[u32; 2]>,
     /// Rounds of the random numbers from which plants are made.
     pub philox: PhiloxRounds,
     /// Stiffness of a blade's root hinge.
@@ -71,7 +73,7 @@ impl Default for Solver {
             max_sweeps: 1024,
             tile_m: 1.0,
             seeding_cell_m: 0.5,
-            blade_table: [128, 64],
+            blade_table: None,
             philox: PhiloxRounds::Seven,
             root: Root::Double,
             method: Method::default(),

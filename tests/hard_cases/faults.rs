@@ -43,12 +43,14 @@ const PLANTINGS: &[Planting] = &[
         collider: Collider::Auto,
         says: "gone through",
     },
+    // A flat or round part is read as well from the nearest texel, since each keeps its plane; in the
+    // inner corners of a fork that texel belongs to another face.
     Planting {
         what: "nearest_sampling",
         mistake: Mistake::Method(|method| method.sampling = Sampling::Nearest),
-        case: "rest_laid",
+        case: "hollow",
         collider: Collider::Cube,
-        says: "restless",
+        says: "beyond it",
     },
     Planting {
         what: "springs_last",

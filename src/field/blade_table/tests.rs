@@ -1,8 +1,9 @@
 use super::super::blade_shape::tests::REFERENCE_TIPS;
 use super::*;
+use proptest::prelude::*;
 
 /// Entries as a scene has them that does not say.
-const USUAL: [u32; 2] = [128, 64];
+const USUAL: Option<[u32; 2]> = None;
 
 fn grass(stiffness: [f32; 2], lean_deg: [f32; 2]) -> Grass {
     let kind = Species {
@@ -35,7 +36,7 @@ fn the_error_falls_with_the_square_of_the_entries() {
     // Bilinear mixing is of second order; halved steps must divide the error by about 4.
     let error = |entries| {
         let grass = grass([100.0, 160.0], [8.0, 16.0]);
-        let table = BladeTable::new(&grass, 8, Root::Double, entries).expect("valid");
+        let table = BladeTable::new(&grass, 8, Root::Double, Some(entries)).expect("valid");
         table.max_error().expect("valid")
     };
     let ratio = error([9, 5]) / error([17, 9]);
@@ -44,7 +45,7 @@ fn the_error_falls_with_the_square_of_the_entries() {
 
 #[test]
 fn entries_are_the_solvers_answers() {
-    let table = BladeTable::new(&Grass::default(), 5, Root::Paper, [4, 3]);
+    let table = BladeTable::new(&Grass::default(), 5, Root::Paper, Some([4, 3]));
     let table = table.expect("the default grass");
     assert_eq!(table.directions.len(), 4 * 3 * 5);
     let k = stiffness_for_segments(160.0, 5);
@@ -66,7 +67,7 @@ fn kinds_share_the_table() {
         lean_deg: [5.0, 5.0],
         ..Species::default()
     });
-    let table = BladeTable::new(&grass, 2, Root::Double, [16, 4]).expect("valid");
+    let table = BladeTable::new(&grass, 2, Root::Double, Some([16, 4])).expect("valid");
     assert_eq!(table.species[0].stiffness, [0.0, 0.25]);
     assert_eq!(table.species[1].stiffness, [0.5, 1.0]);
     assert_eq!(table.species[1].lean, [0.5, 0.5]);
@@ -86,7 +87,7 @@ fn no_species_still_make_a_table() {
         species: Vec::new(),
         ..Grass::default()
     };
-    let table = BladeTable::new(&bare, 8, Root::Double, [2, 2]).expect("valid");
+    let table = BladeTable::new(&bare, 8, Root::Double, Some([2, 2])).expect("valid");
     assert_eq!(table.directions.len(), 2 * 2 * 8);
 }
 
@@ -119,7 +120,7 @@ const KINDS: [(&str, [f32; 2], [f32; 2], f64); 7] = [
     ("no lean, any stiffness", [0.5, 2000.0], [0.0, 0.0], 8e-4),
 ];
 
-fn error(kind: &Grass, segments: u32, root: Root, entries: [u32; 2]) -> f64 {
+fn error(kind: &Grass, segments: u32, root: Root, entries: Option<[u32; 2]>) -> f64 {
     let table = BladeTable::new(kind, segments, root, entries).expect("valid");
     table.max_error().expect("valid")
 }
@@ -130,20 +131,28 @@ fn errors_by_size() {
     for (name, stiffness, lean, limit) in KINDS {
         let kind = grass(stiffness, lean);
         let leans = |entries: u32| if lean[0] == lean[1] { 2 } else { entries };
-        let [half, usual] = [[64, leans(32)], [128, leans(64)]]
-            .map(|entries| error(&kind, 8, Root::Double, entries));
-        println!("{name}: 64 × 32 entries {half:.1e}, 128 × 64 entries {usual:.1e}");
-        assert!(usual <= limit, "{name}: {usual:e}");
+        let [half, even] = [[64, leans(32)], [128, leans(64)]]
+            .map(|entries| error(&kind, 8, Root::Double, Some(entries)));
+        println!("{name}: 64 × 32 entries {half:.1e}, 128 × 64 entries {even:.1e}");
+        assert!(even <= limit, "{name}: {even:e}");
         // Of second order, but for the one cell between no lean and the critical stiffness.
-        assert!(half / usual > 2.0, "{name}: {half:e} to {usual:e}");
+        assert!(half / even > 2.0, "{name}: {half:e} to {even:e}");
     }
-    let widest = error(
-        &grass([8.0, 160.0], [0.0, 90.0]),
-        8,
-        Root::Double,
-        [256, 128],
-    );
-    assert!(widest <= 1e-3, "{widest:e}");
+}
+
+/// A scene that does not say how large its table is gets one large enough.
+#[test]
+fn the_usual_size_keeps_every_kind_within_a_thousandth() {
+    for root in [Root::Double, Root::Paper] {
+        for (name, stiffness, lean, _) in KINDS {
+            let kind = grass(stiffness, lean);
+            let table = BladeTable::new(&kind, 8, root, USUAL).expect("valid");
+            let error = table.max_error().expect("valid");
+            assert!(error <= 1e-3, "{name}, {root:?}: {error:e}");
+            let leans = table.lean_rad.entries;
+            assert_eq!(leans == 2, lean[0] == lean[1], "{name}: {leans} leans");
+        }
+    }
 }
 
 #[test]
@@ -153,7 +162,7 @@ fn any_count_and_root_within_a_thousandth() {
             // 64 segments are the dearest to solve.
             for (lean, entries) in [([0.0, 0.0], [128, 2]), ([0.5, 16.0], [96, 48])] {
                 let kind = grass([20.0, 160.0], lean);
-                let error = error(&kind, segments, root, entries);
+                let error = error(&kind, segments, root, Some(entries));
                 assert!(
                     error <= 1e-3,
                     "N = {segments}, {root:?}, lean {lean:?}: {error:e}"
@@ -210,7 +219,8 @@ fn places_of_an_axis_run_from_end_to_end() {
 #[test]
 fn the_segment_count_keeps_a_plants_shape() {
     let tables = [4, 8, 16].map(|segments| {
-        BladeTable::new(&Grass::default(), segments, Root::Double, [64, 32]).expect("a plain kind")
+        BladeTable::new(&Grass::default(), segments, Root::Double, Some([64, 32]))
+            .expect("a plain kind")
     });
     let tip = |table: &BladeTable, stiffness: f64, lean: f64| {
         let place = table.place(stiffness, lean);
@@ -232,4 +242,24 @@ fn the_segment_count_keeps_a_plants_shape() {
         }
     }
     assert!(most[1] < 0.02 && most[0] < 5.0 * most[1] + 0.02, "{most:?}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// Whatever a kind draws from, and however far apart its ends are.
+    #[test]
+    fn any_kind_within_a_thousandth(
+        mut log2_k in [-4.0_f64..16.0, -4.0..16.0],
+        mut lean_deg in [0.0_f32..90.0, 0.0..90.0],
+        paper in any::<bool>(),
+    ) {
+        log2_k.sort_by(f64::total_cmp);
+        lean_deg.sort_by(f32::total_cmp);
+        let kind = grass(log2_k.map(|k| libm::exp2(k) as f32), lean_deg);
+        let root = if paper { Root::Paper } else { Root::Double };
+        let table = BladeTable::new(&kind, 8, root, USUAL).expect("valid");
+        let error = table.max_error().expect("valid");
+        prop_assert!(error <= 1e-3, "{kind:?}, {root:?}: {error:e}");
+    }
 }

@@ -70,7 +70,7 @@ impl Lane {
     /// A scene that cannot be laid out.
     pub fn reference(loaded: &LoadedScene, solver: Solver) -> Result<Self, RunError> {
         let laid_out = Solver {
-            blade_table: REFERENCE_TABLE,
+            blade_table: Some(REFERENCE_TABLE),
             ..loaded.scene.solver.clone()
         };
         let mut lane = Self::new(loaded, &laid_out, Kind::Double)?;

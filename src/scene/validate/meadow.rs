@@ -233,7 +233,7 @@ pub(super) fn solver(key: &Key, solver: &Solver) -> Check {
     )?;
     within_each(
         &key.field("blade_table"),
-        &solver.blade_table,
+        solver.blade_table.as_slice().as_flattened(),
         &limits::BLADE_TABLE,
     )
 }
