@@ -85,7 +85,11 @@ fn turn_out(tile: TileRecord, length: f32, j: u32, n: vec3f, depth: f32) -> bool
     let rise = along + depth;
     let run = length * length - rise * rise;
     if run <= 0.0 {
-        return false;
+        let under = is_on_ground(tile, nodes[j]) && !is_on_ground(tile, nodes[j + 1u]);
+        if under {
+            turn_to(length, j, plane_below(tile, nodes[j + 1u]));
+        }
+        return under;
     }
     let rest = rest_direction(j);
     let sideways = unit_or(rest - n * dot(rest, n), across(n));

@@ -110,9 +110,13 @@ fn solid_exit(contact: u32, pose: Pose, share: f32, p: vec3f, kept: u32, reach: 
     let solid = contacts[contact].solid;
     var choice = no_choice();
     for (var face = 0u; face < face_count(solid); face++) {
-        let found = solid_face(solid, p, face);
+        var found = solid_face(solid, p, face);
         if found.w <= 0.0 {
             return outside();
+        }
+        let radius = round_radius(solid, face);
+        if radius > 0.0 {
+            found = way_in_reach(p, found, radius, reach);
         }
         let exit = Exit(found.w, found.xyz, face);
         let end = rotate(pose.turn, p + found.xyz * found.w) + pose.place;

@@ -95,3 +95,10 @@ fn unit_or(v: vec3f, fallback: vec3f) -> vec3f {
     }
     return fallback;
 }
+
+
+// Some unit vector at right angles to a unit vector.
+fn across(n: vec3f) -> vec3f {
+    let axis = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(n.x) < 0.5);
+    return unit_or(axis - n * dot(n, axis), UP);
+}

@@ -54,12 +54,6 @@ fn walk_from_root(tile: TileRecord, plant: Plant, touched_at: u32) -> Walk {
     return walk;
 }
 
-// Some unit vector at right angles to a unit vector.
-fn across(n: vec3f) -> vec3f {
-    let axis = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(n.x) < 0.5);
-    return unit_or(axis - n * dot(n, axis), UP);
-}
-
 // True of a blend of opposite directions: short, and along the line of both.
 fn is_turned_over(segment: vec3f, rest: vec3f) -> bool {
     let square = dot(rest, rest);

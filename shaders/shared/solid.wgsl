@@ -172,6 +172,38 @@ fn solid_face(solid: SolidRecord, p: vec3f, face: u32) -> vec4f {
     }
 }
 
+// Radius of a round feature; 0 of a flat one.
+fn round_radius(solid: SolidRecord, face: u32) -> f32 {
+    let round = solid.kind != SOLID_BOX && solid.kind != SOLID_CONVEX
+        && (solid.kind != SOLID_CYLINDER || face == 0u);
+    return select(0.0, solid.dims.x, round);
+}
+
+// The way out through a round feature, the shortest in the reach of a segment. Twin:
+// src/sim/solid/round.rs.
+fn way_in_reach(p: vec3f, way: vec4f, radius: f32, reach: Reach) -> vec4f {
+    let n = way.xyz;
+    let rise = dot(p - reach.start, n) + way.w;
+    if abs(rise) < reach.length || reach.length <= 0.0 {
+        return way;
+    }
+    let centre = p + n * (way.w - radius);
+    let to_centre = centre - reach.start;
+    let axis = unit_or(to_centre, n);
+    let along = dot(to_centre, axis);
+    let span = along * reach.length;
+    let cosine = 0.5 * (along * along + reach.length * reach.length - radius * radius)
+        / max(span, LEAST_SPAN_M2);
+    if abs(cosine) >= 1.0 {
+        return way;
+    }
+    let aside = unit_or(n - axis * dot(axis, n), across(axis));
+    let sine = sqrt(1.0 - cosine * cosine);
+    let end = reach.start + (axis * cosine + aside * sine) * reach.length;
+    let normal = unit_or(end - centre, n);
+    return vec4f(normal, dot(end - p, normal));
+}
+
 // Depth of a point: positive inside.
 fn solid_depth(solid: SolidRecord, p: vec3f) -> f32 {
     var least = 1e30;

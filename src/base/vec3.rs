@@ -74,6 +74,16 @@ impl<R: Real> Vec3<R> {
         }
     }
 
+    /// Some unit vector at right angles to this one, which has unit length.
+    pub fn across(self) -> Self {
+        let axis = if self.x.abs() < R::of(0.5) {
+            vec3(R::ONE, R::ZERO, R::ZERO)
+        } else {
+            vec3(R::ZERO, R::ZERO, R::ONE)
+        };
+        (axis - self * self.dot(axis)).unit_or(Vec3::UP)
+    }
+
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
     }

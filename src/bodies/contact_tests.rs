@@ -1,5 +1,6 @@
 //! Bodies and the ground.
 
+use super::collider::LAND_M;
 use super::tests::{DT_S, ball, body, place, run, world};
 use crate::scene::{Motion, Shape};
 
@@ -73,14 +74,16 @@ fn what_does_not_move_keeps_its_bits() {
 }
 
 #[test]
-fn a_body_beyond_the_edge_falls_and_harms_nothing() {
+fn a_body_beyond_the_land_falls_and_harms_nothing() {
     let mut bodies = world(vec![
-        ball("a", [30.0, 1.0, 0.0]),
+        ball("a", [10.0 + LAND_M + 20.0, 1.0, 0.0]),
         ball("b", [0.0, 1.0, 0.0]),
+        ball("c", [10.0 + 0.5 * LAND_M, 1.0, 0.0]),
     ]);
     run(&mut bodies, 0.0, 30.0);
     assert!(place(&bodies, "a")[1] < -1000.0);
     assert!((place(&bodies, "b")[1] - 0.15).abs() < 5e-4);
+    assert!((place(&bodies, "c")[1] - 0.15).abs() < 5e-4);
     assert!(bodies.quarantined().is_empty());
 }
 

@@ -97,7 +97,9 @@ impl Bodies {
             refused: 0,
             links: Vec::new(),
         };
-        for (place, collider) in collider::ground(ground, scene.terrain.friction)? {
+        let field = collider::ground(ground, scene.terrain.friction)?;
+        let land = collider::land(ground, scene.terrain.friction);
+        for (place, collider) in field.into_iter().chain(land) {
             let at = bodies.frame.place_to_rapier(place);
             let mut collider = collider;
             collider.set_translation(at);

@@ -24,7 +24,9 @@ use crate::sim::contact::{FACE_MASK, ON_SURFACE_M};
 use crate::sim::depth_cube::{DEPTH_STEPS, HIDDEN, HIDDEN_SHARE, HIT, LEAST_WEIGHT};
 use crate::sim::recover::ASIDE;
 use crate::sim::relax::{LOOKS, ON_GROUND_M, SPRING_TRIES, STICKS};
-use crate::sim::solid::{CAME_THROUGH_M, HIDDEN_M, KEEP_FACE, NO_FACE, OPPOSITE, OUT_OF_REACH_M};
+use crate::sim::solid::{
+    CAME_THROUGH_M, HIDDEN_M, KEEP_FACE, LEAST_SPAN_M2, NO_FACE, OPPOSITE, OUT_OF_REACH_M,
+};
 
 /// A WGSL file, embedded, with the Rust constants it uses.
 #[derive(Clone, Copy, Debug)]
@@ -147,6 +149,7 @@ pub const SHARED: &[WgslFile] = &[
         CAME_THROUGH_M,
         HIDDEN_M,
         KEEP_FACE,
+        LEAST_SPAN_M2,
         NO_FACE,
         OPPOSITE,
         OUT_OF_REACH_M,

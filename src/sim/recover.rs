@@ -22,7 +22,6 @@ use crate::scene::method::Recovery;
 
 use super::fault::Planted;
 use super::meadow::Meadow;
-use super::relax::across;
 
 /// How offsets fade.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +67,7 @@ pub fn restore_lengths<R: Real>(nodes: &mut Nodes<R>, wind: &Nodes<R>, segments:
         let mut segment = nodes[j + 1] - below;
         below = nodes[j + 1];
         if is_turned_over(segment, rest) {
-            segment += across(rest.unit_or(Vec3::UP)) * (length * R::of(ASIDE));
+            segment += rest.unit_or(Vec3::UP).across() * (length * R::of(ASIDE));
         }
         let direction = segment.unit_or(rest.unit_or(Vec3::UP));
         nodes[j + 1] = nodes[j] + direction * length;
@@ -140,7 +139,7 @@ fn turned<R: Real>(from: Vec3<R>, to: Vec3<R>, share: R) -> Vec3<R> {
     let cos = from.dot(to).to_f64().clamp(-1.0, 1.0);
     let off = to - from * R::of(cos);
     // Opposite directions have no plane of their own: the one through a fixed axis.
-    let sideways = across(from);
+    let sideways = from.across();
     let angle = libm::atan2(off.length().to_f64(), cos) * share.to_f64();
     let aside = off.unit_or(sideways);
     from * R::of(libm::cos(angle)) + aside * R::of(libm::sin(angle))

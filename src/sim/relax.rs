@@ -217,16 +217,6 @@ impl<'a, R: Real> Bodies<'a, R> {
 /// less far every time.
 pub const LOOKS: usize = 4;
 
-/// Some unit vector at right angles to a unit vector.
-pub(super) fn across<R: Real>(n: Vec3<R>) -> Vec3<R> {
-    let axis = if n.x.abs() < R::of(0.5) {
-        vec3(R::ONE, R::ZERO, R::ZERO)
-    } else {
-        vec3(R::ZERO, R::ZERO, R::ONE)
-    };
-    (axis - n * n.dot(axis)).unit_or(Vec3::UP)
-}
-
 /// Moves nodes onto the rest length of their segments, from root to tip. A segment that would dip
 /// into the ground is laid on it at its full length (cutting it off there would shorten it), one
 /// that would end in a body is turned out of it. Returns whether one was.
@@ -277,7 +267,7 @@ impl<R: Real> Place<'_, R> {
     }
 
     /// The upper node of a segment, turned about the lower one until it is at the end of a way out of
-    /// a part, or of the way between the part and the ground; `None` where it is too short for that,
+    /// a part, or of the way between the part and the ground; `None` where it is too short for both,
     /// or lies there already.
     fn turned_out(
         &self,
@@ -291,9 +281,12 @@ impl<R: Real> Place<'_, R> {
         let rise = along + exit.depth;
         let run = self.length * self.length - rise * rise;
         if run <= R::ZERO {
-            return None;
+            // Too short for every way out, as where its lower node is held under the body: it stays on
+            // the ground with that.
+            let is_under = self.is_on_ground(from) && !self.is_on_ground(to);
+            return is_under.then(|| self.turn_to(from, to, &self.plane_below(to), rest));
         }
-        let sideways = (rest - n * rest.dot(n)).unit_or(across(n));
+        let sideways = (rest - n * rest.dot(n)).unit_or(n.across());
         let flat = ((to - from) - n * along).unit_or(sideways);
         let out = from + n * rise + flat * run.sqrt();
         if !self.is_pressed(out, n) {

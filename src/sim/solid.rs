@@ -7,6 +7,7 @@
 //! (hysteresis against flipping). WGSL twin: `shaders/shared/solid.wgsl`, for the convex ones: whole
 //! bodies (`whole.rs`) are for the reference, for measures and for one cube per body.
 
+mod round;
 mod whole;
 
 use std::sync::Arc;
@@ -14,6 +15,7 @@ use std::sync::Arc;
 use crate::base::{Real, Vec3, vec3};
 use crate::bodies::{self, TrueMesh};
 
+pub use round::LEAST_SPAN_M2;
 pub use whole::Member;
 
 /// A feature is kept until another is nearer by this factor.
@@ -260,10 +262,10 @@ impl<R: Real> Solid<R> {
     fn nearest(&self, mut choice: Choice<R>, covered: impl Fn(Vec3<R>) -> bool) -> Option<Exit<R>> {
         let p = choice.p;
         for face in 0..self.feature_count() {
-            let (depth, normal) = self.feature(p, face);
-            if depth <= R::ZERO {
+            if self.feature(p, face).0 <= R::ZERO {
                 return None;
             }
+            let (depth, normal) = self.way_through(p, face, choice.reach);
             let exit = Exit {
                 depth,
                 normal,
@@ -305,6 +307,21 @@ impl<R: Real> Solid<R> {
                 (plane.offset - plane.normal.dot(p), plane.normal)
             }
             Self::Union(_) | Self::Mesh { .. } => (R::ZERO, Vec3::UP),
+        }
+    }
+
+    /// The shortest way out of a convex solid through a feature; through a round one the shortest that is
+    /// in a segment's reach.
+    fn way_through(&self, p: Vec3<R>, face: u32, reach: &Reach<R>) -> (R, Vec3<R>) {
+        let way = self.feature(p, face);
+        match self {
+            Self::Ball { radius } | Self::Capsule { radius, .. } => {
+                round::way_in_reach(p, way, *radius, reach)
+            }
+            Self::Cylinder { radius, .. } if face == 0 => {
+                round::way_in_reach(p, way, *radius, reach)
+            }
+            _ => way,
         }
     }
 

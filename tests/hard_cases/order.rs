@@ -211,8 +211,8 @@ pub fn threads(setting: &Setting) -> Measured {
         }
     }
     let threads: &[usize] = match setting.device {
-        Device::Processor => &[1, 2, 3, 5, 8],
         Device::Graphics(..) => &[1, 3],
+        Device::Processor | Device::Reference => &[1, 2, 3, 5, 8],
     };
     for &threads in threads {
         let pool = rayon::ThreadPoolBuilder::new()

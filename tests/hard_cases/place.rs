@@ -167,3 +167,30 @@ fn thrown_at(setting: &Setting, x: f64) -> Result<[f64; 3], Failed> {
         .ok_or("the ball is gone")?;
     Ok(ball.pose.place.to_f64())
 }
+
+/// A ball and a box that leave the field. Where the ground ends at the field's rim they fall, and cut
+/// through the rim and the grass on it by 64 mm.
+pub fn over_the_edge(setting: &Setting) -> Measured {
+    let collider = setting.collider();
+    let mut rig = setting.rig(&format!(
+        "(duration_s: 4, terrain: (ground: Flat(size_m: (4, 3))), {CALM}, bodies: [
+            (name: \"ball\", shape: Ball(radius_m: 0.12), position_m: (1.4, 0.12, 0.4), collider: {collider},
+             motion: Thrown(velocity_m_per_s: (2, 0, 0))),
+            (name: \"box\", shape: Box(size_m: (0.3, 0.2, 0.3)), position_m: (1.5, 0.11, -0.4), collider: {collider},
+             motion: Thrown(velocity_m_per_s: (3, 0, 0)))])",
+    ))?;
+    rig.run_to(2 * SECOND_TICKS, 1)?;
+    let ball = rig
+        .meadow
+        .bodies
+        .info_of("ball")
+        .ok_or("the ball is gone")?;
+    let [x, y, _] = ball.pose.place.to_f64();
+    let text = format!(
+        "the ball is at x = {x:.2} m, {y:.3} m up; deepest node at {:.2} of its limit",
+        rig.seen.depth_over_limit
+    );
+    ensure(x > 2.5 && (y - 0.12).abs() < 1e-3, || text.clone())?;
+    rig.nothing_is_inside()?;
+    Ok(text)
+}

@@ -230,6 +230,45 @@ pub fn rod(setting: &Setting) -> Measured {
     told(&met, &rig)
 }
 
+/// Rods thinner than a segment is long, at several heights and angles. A segment runs right through such a
+/// rod, and is too short to take its end out on the far side: pushed that way alone, the end stays
+/// inside by a sixth of the radius.
+pub fn thin_rods(setting: &Setting) -> Measured {
+    let rods = [
+        ("Capsule(radius_m: 0.02, length_m: 0.8)", 0.2, -1.5, 0.0),
+        ("Cylinder(radius_m: 0.02, height_m: 0.8)", 0.1, -0.5, 10.0),
+        ("Capsule(radius_m: 0.015, length_m: 0.8)", 0.05, 0.5, 45.0),
+        ("Capsule(radius_m: 0.025, length_m: 0.8)", 0.3, 1.5, -20.0),
+    ];
+    let body = |(shape, y, z, angle): (&str, f64, f64, f64)| {
+        let at = |t: f64, x: f64| {
+            format!(
+                "(at_s: {t:?}, position_m: ({x:?}, {y:?}, {z:?}), rotation_deg: (90.0, {angle:?}, 0.0))"
+            )
+        };
+        format!(
+            "(name: \"rod {z}\", shape: {shape}, collider: {}, motion: Path(waypoints: [{}, {}]))",
+            setting.collider(),
+            at(0.0, -2.5),
+            at(2.0, 2.5)
+        )
+    };
+    let mut rig = setting.rig(&format!(
+        "(duration_s: 2, terrain: (ground: Flat(size_m: (4, 4))), {CALM}, bodies: [{}])",
+        rods.map(body).join(", ")
+    ))?;
+    rig.run_to(2 * SECOND_TICKS, 1)?;
+    let seen = rig.seen;
+    ensure(seen.pushed_nodes > 10_000, || {
+        format!("only {} nodes of pushed plants", seen.pushed_nodes)
+    })?;
+    rig.nothing_is_inside()?;
+    Ok(format!(
+        "deepest node at {:.2} of its limit, strain {:.4}, {} nodes of pushed plants",
+        seen.depth_over_limit, seen.strain, seen.pushed_nodes
+    ))
+}
+
 /// Inner half width and inner height of the cup, and the thickness of its walls, in metres.
 const CUP: [f64; 3] = [0.4, 0.55, 0.05];
 /// Most that a blade in the cavity may be moved, in metres.

@@ -107,10 +107,15 @@ pub(super) fn exit<R: Real>(
     let mut first_face = 0;
     for (n, member) in members.iter().enumerate() {
         let local = member.pose.inverse_point(p);
+        let local_reach = Reach {
+            from: member.pose.inverse_point(reach.from),
+            before: member.pose.inverse_point(reach.before),
+            ..*reach
+        };
         let faces = member.solid.feature_count();
         if member.solid.depth(local) > R::ZERO {
             for face in 0..faces {
-                let (depth, normal) = member.solid.feature(local, face);
+                let (depth, normal) = member.solid.way_through(local, face, &local_reach);
                 let normal = member.pose.turn.rotate(normal);
                 let end = p + normal * depth;
                 let covered = members.iter().enumerate().any(|(other, member)| {

@@ -8,8 +8,6 @@
 
 use crate::base::{Real, Vec3};
 
-use super::super::relax::across;
-
 /// Turns every hinge of a centre line, root to tip, so that the extension of its bend spring loses
 /// the share `share` = 2a. `rest` holds the same nodes at rest. In place, nothing is allocated.
 pub fn turn<R: Real>(rest: &[Vec3<R>], nodes: &mut [Vec3<R>], share: R) {
@@ -27,7 +25,7 @@ pub fn turn<R: Real>(rest: &[Vec3<R>], nodes: &mut [Vec3<R>], share: R) {
         let cos = ((wanted * wanted - b * b - a * a) / product).clamp(-R::ONE, R::ONE);
         let along = below.unit_or(Vec3::UP);
         let from = above.unit_or(along);
-        let sideways = (from - along * from.dot(along)).unit_or(across(along));
+        let sideways = (from - along * from.dot(along)).unit_or(along.across());
         let to = along * cos + sideways * (R::ONE - cos * cos).max(R::ZERO).sqrt();
         turn_above(&mut nodes[j + 1..], from, to);
     }
