@@ -1,5 +1,6 @@
 //! Scenes as tests of another program.
 
+use std::fmt;
 use std::path::Path;
 
 use crate::scene::{LoadedScene, SceneError, load_scene};
@@ -8,7 +9,7 @@ use super::judge::Verdict;
 use super::scenario::{Device, Outcome, RunError, RunOptions, run_scene};
 
 /// Why a scene is no passed test.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum CheckError {
     #[error(transparent)]
     Scene(#[from] Box<SceneError>),
@@ -16,6 +17,13 @@ pub enum CheckError {
     Run(#[from] RunError),
     #[error("{name} failed:\n{}", failures.join("\n"))]
     Failed { name: String, failures: Vec<String> },
+}
+
+/// A test that returns this error shows it by `Debug`: the sentence is what its reader needs.
+impl fmt::Debug for CheckError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 /// Runs a scene file on the cpu engine and checks its expectations:

@@ -146,6 +146,8 @@ pub struct Metrics {
     pub pose_p95_m: Option<f64>,
     /// Nodes that lay on the ground inside a body, summed over frames.
     pub pinched_vertices: u64,
+    /// Plants whose root lay inside a body that pushed or held them, at most at the end of a frame.
+    pub buried_plants: u64,
     pub tiles_total: u64,
     pub tiles_active_peak: u64,
     pub plants_simulated_peak: u64,
@@ -273,6 +275,7 @@ impl Metrics {
             pose_rms_m: difference.map(|d| d.pose_rms_m),
             pose_p95_m: difference.map(|d| d.pose_p95_m),
             pinched_vertices: watch.pinched,
+            buried_plants: watch.buried,
             tiles_total: u64::from(meadow.field.grid.tile_count()),
             tiles_active_peak: meadow.tiles.peak as u64,
             plants_simulated_peak: meadow.counters.plants_peak,
@@ -373,6 +376,7 @@ pub(super) mod tests {
         let mut metrics = keys(&scenario["metrics"]);
         metrics.sort_unstable();
         let want = [
+            "buried_plants",
             "capped_sweeps",
             "compared_plants",
             "flipped_roots_m",

@@ -121,13 +121,16 @@ fn write_metrics(metrics: &Metrics, out: &mut impl Write) -> io::Result<()> {
     let mm = |m: f64| format!("{:.3} mm", m * 1e3);
     writeln!(
         out,
-        "  penetration  {} at most, {} for 99.9%, {} rms; {} not pushed; over-push {}; {} pinched",
+        "  penetration  {} at most, {} for 99.9%, {} rms; {} not pushed; {} for middles of segments; over-push {}; \
+         {} pinched, {} plants buried",
         mm(metrics.max_penetration_m),
         mm(metrics.p999_penetration_m),
         mm(metrics.rms_penetration_m),
         mm(metrics.max_missed_penetration_m),
+        mm(metrics.max_middle_penetration_m),
         mm(metrics.over_push_m),
-        metrics.pinched_vertices
+        metrics.pinched_vertices,
+        metrics.buried_plants
     )?;
     writeln!(
         out,

@@ -19,6 +19,8 @@ pub struct Watch {
     pushed_nodes: u64,
     pub worst: Depth,
     pub pinched: u64,
+    /// Most plants at the end of a frame whose root lay inside a body.
+    pub buried: u64,
     pub over_push_m: f64,
     /// Largest depth of a node of a plant that no body pushed or held, in metres.
     pub missed_m: f64,
@@ -66,6 +68,7 @@ impl Watch {
             self.worst = frame.worst;
         }
         self.pinched += frame.pinched;
+        self.buried = self.buried.max(frame.buried);
         self.over_push_m = self.over_push_m.max(frame.over_push_m);
         let deepest = frame.middle_depths_m.iter().copied().fold(0.0, f64::max);
         self.max_middle_m = self.max_middle_m.max(deepest);
@@ -80,7 +83,7 @@ impl Watch {
     }
 
     /// The depth that 99.9% of the pushed nodes do not exceed, in metres; nodes outside count
-    /// as 0.
+    /// as 0. Nodes of plants that were missed count with their depth, so that it is never too small.
     pub fn p999_penetration_m(&self) -> f64 {
         let nodes = self.pushed_nodes as f64;
         let inside = self.depths_m.len() as f64;

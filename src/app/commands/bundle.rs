@@ -20,7 +20,8 @@ const TRACE: &str = "trace.csv";
 const SCENE: &str = "scene.ron";
 const METRICS: &str = "metrics.json";
 const PICTURE: &str = "end.png";
-/// How the run ended, and why there is no picture: only where there is something to say.
+/// How to do the run again, how it ended, and why there is no picture: only where there is something to
+/// say.
 const NOTES: &str = "notes.txt";
 
 /// A folder that is filled if its scenario fails, and goes if it passes.
@@ -81,10 +82,15 @@ impl Bundle {
         for file in contents.loaded.assets.file_hashes.keys() {
             write(file, &contents.asset(file)?)?;
         }
-        if let Some(recording) = contents.recording {
-            write(&recording_name(contents.name), &text_of(recording)?)?;
-        }
         let mut notes = String::new();
+        if let Some(recording) = contents.recording {
+            let name = recording_name(contents.name);
+            write(&name, &text_of(recording)?)?;
+            notes.push_str(&format!(
+                "{SCENE} is the scene as it was given. `sward replay {name}` does the run again with the settings that \
+                 the command line had beside it.\n"
+            ));
+        }
         if let End::BrokenOff { ticks, error } = &end {
             notes.push_str(&format!(
                 "The run ended early, after {ticks} whole sub-steps: {error}\n\

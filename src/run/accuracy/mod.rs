@@ -16,6 +16,7 @@ mod relative;
 mod rod;
 pub mod rods;
 pub mod scenes;
+mod shapes;
 mod store;
 mod summary;
 mod table;
@@ -32,6 +33,7 @@ pub use plan::{
 };
 pub use plot::{PlotError, error_plot, summary_plot};
 pub use relative::Relative;
+pub use shapes::Shapes;
 pub use store::{Dropped, Row, Store, Stored};
 pub use table::write_markdown;
 
@@ -65,6 +67,8 @@ pub struct Report {
     pub blades: Option<Blades>,
     /// Measured where the blades are.
     pub independent: Option<Independent>,
+    /// The same.
+    pub shapes: Option<Shapes>,
 }
 
 /// The points of a scene.
@@ -146,6 +150,7 @@ pub fn run(
     };
     let blades = plan.blades.then(Blades::measure).transpose()?;
     let independent = plan.blades.then(Independent::measure).transpose()?;
+    let shapes = plan.blades.then(Shapes::measure);
     Ok(Report {
         machine,
         adapter,
@@ -153,6 +158,7 @@ pub fn run(
         cost,
         blades,
         independent,
+        shapes,
     })
 }
 
@@ -248,6 +254,7 @@ mod tests {
             cost: Vec::new(),
             blades: None,
             independent: None,
+            shapes: None,
         }
     }
 

@@ -36,6 +36,9 @@ pub fn write_markdown(report: &Report, plots: bool, out: &mut impl Write) -> io:
     if let Some(blades) = &report.blades {
         blades.write(out)?;
     }
+    if let Some(shapes) = &report.shapes {
+        shapes.write(out)?;
+    }
     for scene in &report.scenes {
         write_scene(scene, plots, out)?;
     }
