@@ -43,6 +43,10 @@ const CHECKS: &[(&str, Check)] = &[
         counted::density_follows_the_equations,
     ),
     (
+        "density_is_a_factor_of_the_prefix",
+        counted::density_is_a_factor_of_the_prefix,
+    ),
+    (
         "what_cannot_be_drawn_is_refused",
         what_cannot_be_drawn_is_refused,
     ),

@@ -21,9 +21,33 @@ pub fn whole(text: &str, least: u32, most: u32) -> Result<u32, String> {
     within.ok_or_else(|| format!("give a whole number from {least} to {most}"))
 }
 
+/// Least and largest factor of the number of plants drawn.
+pub const DENSITIES: [f32; 2] = [0.1, 4.0];
+
+/// A factor of the number of plants drawn.
+///
+/// # Errors
+///
+/// A text that is none, with the limits.
+pub fn density(text: &str) -> Result<f32, String> {
+    let [least, most] = DENSITIES;
+    let parsed = text.parse().ok();
+    let within = parsed.filter(|factor| (least..=most).contains(factor));
+    within.ok_or_else(|| format!("give a factor from {least} to {most}, such as 0.5"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn densities_have_limits() {
+        assert_eq!((density("0.1"), density("4")), (Ok(0.1), Ok(4.0)));
+        for wrong in ["0", "0.09", "4.1", "NaN", "inf", "-1", "thick", ""] {
+            let told = density(wrong).expect_err(wrong);
+            assert!(told.contains("0.1 to 4"), "{told}");
+        }
+    }
 
     #[test]
     fn limits_are_allowed_and_told() {

@@ -60,6 +60,9 @@ pub struct BladeDetail {
     /// with it.
     pub tuft: u32,
     pub count: Count,
+    /// Factor of every count and of its ceiling: above 1, blades get more companions; below 1, the last
+    /// plants of every triangle's sequence are left out. Those that stay do not move.
+    pub density: f32,
     pub submission: Submission,
     pub transition: Transition,
     /// Whether plants within twice `full_m` cast shadows on the ground, where
@@ -77,6 +80,7 @@ impl Default for BladeDetail {
             reach_m: 110.0,
             tuft: 4,
             count: Count::Distance,
+            density: 1.0,
             submission: Submission::Exact,
             transition: Transition::Smooth,
             shadows: true,
@@ -108,7 +112,7 @@ impl BladeDetail {
     /// # Errors
     /// Distances that are not finite and positive, an empty tuft.
     pub(super) fn check(self) -> Result<(), RenderError> {
-        let lengths = [self.full_m, self.reach_m];
+        let lengths = [self.full_m, self.reach_m, self.density];
         let per_px = match self.count {
             Count::Distance => 1.0,
             Count::ProjectedArea { per_px } | Count::WorldArea { per_px } => per_px,
@@ -257,7 +261,8 @@ fn slab_of(input: &BladesInput<'_>, tile: TileId) -> Option<u32> {
 
 /// Plants of a seeding triangle and their companions: n_max of eq. 1.
 pub(super) fn most_on_triangle(input: &BladesInput<'_>) -> f64 {
-    f64::from(input.field.grid.plants_per_triangle()) * f64::from(input.detail.tuft.max(1))
+    let plants = f64::from(input.field.grid.plants_per_triangle());
+    plants * f64::from(input.detail.tuft.max(1)) * f64::from(input.detail.density)
 }
 
 /// A number that no triangle of a tile's count exceeds.
@@ -265,7 +270,9 @@ fn count_bound(input: &BladesInput<'_>, view: &View, picture: Size, sight: &Sigh
     let most = most_on_triangle(input);
     let per_px = match input.detail.count {
         Count::Distance => return input.detail.share(sight.distance_m) * most,
-        Count::ProjectedArea { per_px } | Count::WorldArea { per_px } => f64::from(per_px),
+        Count::ProjectedArea { per_px } | Count::WorldArea { per_px } => {
+            f64::from(per_px) * f64::from(input.detail.density)
+        }
     };
     let (field, grid) = (input.field, &input.field.grid);
     let cell_m = f64::from(grid.cell_m);

@@ -338,7 +338,7 @@ fn count_uniform(input: &SortInput<'_>) -> CountUniform {
         right: input.view.right().to_f32(),
         pixel_rad: input.view.pixel_rad(input.picture.rows),
         up: input.view.up().to_f32(),
-        per_px,
+        per_px: per_px * input.detail.density,
         forward: input.view.forward.to_f32(),
         rule,
         most: input.most,

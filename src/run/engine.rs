@@ -82,6 +82,24 @@ impl Engine {
         })))
     }
 
+    /// The same engine with all grass at rest, for a meadow whose plants have become others.
+    ///
+    /// # Errors
+    ///
+    /// A meadow larger than the device can bind.
+    pub fn at_rest(
+        &self,
+        gpu: &Gpu,
+        kernels: &GrassKernels,
+        meadow: &mut Meadow,
+    ) -> Result<Self, GpuError> {
+        match self {
+            Self::Cpu(_) => Ok(Self::cpu()),
+            Self::Gpu(_) => Self::gpu(gpu, kernels, meadow),
+            Self::Reference(_) => Ok(Self::Reference(Box::default())),
+        }
+    }
+
     /// Advances the meadow and its grass by one sub-step.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use crate::render::{
     RenderError, Renderer, Sun, View, active_slabs, bodies_at, scene_view, tile_marks,
 };
 use crate::scene::assets::Assets;
-use crate::scene::{Action, Camera, LoadedScene};
+use crate::scene::{Action, Camera, Likes, LoadedScene};
 use crate::sim::{Meadow, MeadowError};
 use crate::terrain::ColourMap;
 
@@ -140,6 +140,21 @@ impl Stage {
         self.meadow = meadow;
         self.engine = engine;
         Ok(())
+    }
+
+    /// Gives the kind of plant at a place of the scene's list another ground to like; the meadow grows
+    /// anew at once. Bodies, wind and time go on. All grass comes to rest, since a bent plant may be of
+    /// another kind now, or gone: what a body still touches is pushed with the next sub-step, and
+    /// imprints are lost. The state hash begins a new chain.
+    ///
+    /// # Errors
+    ///
+    /// A kind that the scene lacks or that likes no ground, a value outside its range: then nothing has
+    /// changed. After the device's refusal the stage needs [`Stage::set_scene`].
+    pub fn set_likes(&mut self, gpu: &Gpu, kind: usize, likes: Likes) -> Result<(), StageError> {
+        self.meadow.set_likes(kind, likes)?;
+        self.engine = self.engine.at_rest(gpu, &self.kernels, &mut self.meadow)?;
+        show(gpu, &mut self.renderer, &self.meadow, &self.loaded.assets)
     }
 
     /// The scene as it was read.

@@ -10,9 +10,9 @@ use crate::bodies::{Bodies, BodyError, Link};
 use crate::field::grid::ANCHOR_CELLS;
 use crate::field::tiles::Changes;
 use crate::field::wind::FADE_S;
-use crate::field::{ActiveTiles, Field, FieldError, TileId, TileState, WindNow};
+use crate::field::{ActiveTiles, Field, FieldError, Kinds, TileId, TileState, WindNow};
 use crate::scene::assets::Assets;
-use crate::scene::{Action, Event, Invalid, Scene, Wind, validate};
+use crate::scene::{Action, Event, Invalid, Likes, Scene, Wind, validate};
 use crate::terrain::{ColourMap, HeightGrid, TerrainError};
 
 use super::fault::Planted;
@@ -89,6 +89,12 @@ pub enum MeadowError {
     Field(#[from] FieldError),
     #[error(transparent)]
     Body(#[from] BodyError),
+    #[error("there is no kind of plant {kind}: the scene has {known}, counted from 0")]
+    NoSuchKind { kind: usize, known: usize },
+    #[error(
+        "plants of the kind '{name}' have no `likes`: give `likes` to every kind in the scene first"
+    )]
+    LikesNoGround { name: String },
 }
 
 /// The tiles whose plants a mover may touch, and the movers near any tile: those that would reach
@@ -122,6 +128,13 @@ fn lay_out(ground: HeightGrid, scene: &Scene, assets: &Assets) -> Result<Field, 
     Ok(Field::on_map(ground, map, &scene.grass, &scene.solver)?)
 }
 
+/// No tile awake, and as much state as the budget allows.
+fn all_at_rest(field: &Field, scene: &Scene) -> ActiveTiles {
+    let slab = slab_bytes(field.grid.plants_per_tile(), scene.solver.segments).max(1);
+    let slab_limit = (STATE_BUDGET_BYTES / slab).min(u64::from(field.grid.tile_count()));
+    ActiveTiles::new(slab_limit as u32)
+}
+
 impl Meadow {
     /// Lays out a scene.
     ///
@@ -133,8 +146,7 @@ impl Meadow {
         let ground = crate::terrain::height_grid(&scene.terrain, assets)?;
         let bodies = Bodies::new(&scene, assets, &ground)?;
         let field = lay_out(ground, &scene, assets)?;
-        let slab = slab_bytes(field.grid.plants_per_tile(), scene.solver.segments).max(1);
-        let slab_limit = (STATE_BUDGET_BYTES / slab).min(u64::from(field.grid.tile_count()));
+        let tiles = all_at_rest(&field, &scene);
         let mut script = scene.script.clone();
         script.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
         let wind = WindChange {
@@ -147,7 +159,7 @@ impl Meadow {
             bodies,
             parts: Parts::default(),
             truth: Parts::default(),
-            tiles: ActiveTiles::new(slab_limit as u32),
+            tiles,
             work: Work::default(),
             changes: Changes::default(),
             counters: Counters::default(),
@@ -161,6 +173,35 @@ impl Meadow {
         };
         meadow.work.wind = meadow.wind_at(0.0);
         Ok(meadow)
+    }
+
+    /// Gives a kind of plant, by its place in the scene's list, another ground to like, and puts all tiles
+    /// to rest: the engine has to begin anew with resting grass. Roots stay where they are.
+    ///
+    /// # Errors
+    ///
+    /// A kind that the scene lacks or that likes no ground; a value outside its range. Then nothing has
+    /// changed.
+    pub fn set_likes(&mut self, kind: usize, likes: Likes) -> Result<(), MeadowError> {
+        let mut scene = self.scene.clone();
+        let known = scene.grass.species.len();
+        let Some(species) = scene.grass.species.get_mut(kind) else {
+            return Err(MeadowError::NoSuchKind { kind, known });
+        };
+        let (Some(kinds), Some(_)) = (&self.field.seeds.kinds, &species.likes) else {
+            let name = species.name.clone();
+            return Err(MeadowError::LikesNoGround { name });
+        };
+        species.likes = Some(likes);
+        validate(&scene)?;
+        let map = Arc::clone(&kinds.map);
+        self.field.seeds.kinds = Kinds::new(&scene.grass, &self.field.grid, map);
+        self.tiles = all_at_rest(&self.field, &scene);
+        self.work.tiles.clear();
+        self.work.contacts.clear();
+        self.changes = Changes::default();
+        self.scene = scene;
+        Ok(())
     }
 
     /// Simulated time so far, in seconds.

@@ -150,6 +150,18 @@ fn options_that_would_change_nothing_are_refused_by_name() {
             ["bench terrain", "--engine"],
         ),
         (
+            &["bench", "flight", "--quick", "--engine", "gpu"],
+            ["bench flight", "--engine"],
+        ),
+        (
+            &["bench", "popping", "--require-gpu"],
+            ["bench popping", "--require-gpu"],
+        ),
+        (
+            &["bench", "submission", "--engine", "cpu"],
+            ["bench submission", "--engine"],
+        ),
+        (
             &["bench", "terrain", "--quick"],
             ["bench flight", "--quick"],
         ),

@@ -50,7 +50,7 @@ fn expected(field: &Field, view: &View, detail: BladeDetail) -> (BTreeMap<&'stat
         forward: Vec3::of_f32(view.forward.to_f32()),
         pixel_rad: view.pixel_rad(SIZE[1]),
     };
-    let most = (grid.plants_per_triangle() * detail.tuft) as f32;
+    let most = (grid.plants_per_triangle() * detail.tuft) as f32 * detail.density;
     let (mut plants, mut mean) = (BTreeMap::new(), 0.0);
     let mut add = |tile: TileId, rank: u32| {
         let place = rank % grid.plants_per_tile();
@@ -59,11 +59,11 @@ fn expected(field: &Field, view: &View, detail: BladeDetail) -> (BTreeMap<&'stat
             Count::Distance => most,
             Count::ProjectedArea { per_px } => {
                 let corners = corners(field, seed.cell, seed.half, view.eye_in_world);
-                by_projected_area(corners, &count_view, per_px, most)
+                by_projected_area(corners, &count_view, per_px * detail.density, most)
             }
             Count::WorldArea { per_px } => {
                 let corners = corners(field, seed.cell, seed.half, view.eye_in_world);
-                by_world_area(corners, &count_view, per_px, most)
+                by_world_area(corners, &count_view, per_px * detail.density, most)
             }
         };
         let count = match detail.submission {
@@ -93,7 +93,8 @@ fn expected(field: &Field, view: &View, detail: BladeDetail) -> (BTreeMap<&'stat
         }
     };
     for tile in 0..grid.tile_count() {
-        for rank in 0..grid.plants_per_tile() * detail.tuft {
+        let copies = (detail.tuft as f32 * detail.density).ceil() as u32;
+        for rank in 0..grid.plants_per_tile() * copies {
             add(tile, rank);
         }
     }
@@ -153,6 +154,30 @@ pub fn plants_are_sorted_by_form(gpu: &Gpu) -> Result<(), Failed> {
             let got = drawn(gpu, &mut stage, &view, detail)?;
             println!("{submission:?}, {count:?}: {got:?}");
             compare(&got, &want, count).map_err(|text| format!("{submission:?}, {text}"))?;
+        }
+    }
+    Ok(())
+}
+
+/// Every rule draws as many times the plants as the density says, and of each triangle the first of
+/// its sequence: those that stay are the same.
+pub fn density_is_a_factor_of_the_prefix(gpu: &Gpu) -> Result<(), Failed> {
+    let mut stage = Stage::new(gpu, KINDS, 0)?;
+    let view = View::look_at(Vec3::of(EYE_M), Vec3::ZERO, 60.0);
+    for count in [Count::Distance, Count::ProjectedArea { per_px: 4.0 }] {
+        for density in [0.4, 0.7, 1.5] {
+            let detail = BladeDetail {
+                full_m: 40.0,
+                reach_m: 60.0,
+                tuft: 2,
+                count,
+                density,
+                ..BladeDetail::default()
+            };
+            let (want, _) = expected(&stage.meadow.field, &view, detail);
+            let got = drawn(gpu, &mut stage, &view, detail)?;
+            println!("{density} times, {count:?}: {got:?}");
+            compare(&got, &want, count).map_err(|text| format!("{density} times, {text}"))?;
         }
     }
     Ok(())

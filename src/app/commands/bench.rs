@@ -55,14 +55,25 @@ enum Bench {
     Flight,
 }
 
+impl Bench {
+    /// As it is given on the command line.
+    fn name(self) -> String {
+        let value = self.to_possible_value();
+        value.map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}
+
 /// Scene of a million blades.
 const MILLION: &str = "million_blades";
 
 /// Runs the bench and prints its tables.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
-    if matches!(arguments.what, Bench::Terrain) && arguments.engine.is_chosen() {
-        let text = "bench terrain runs no engine: leave --engine and --require-gpu out";
-        return Err(Failure::Usage(text.into()));
+    if !matches!(arguments.what, Bench::Tiles) && arguments.engine.is_chosen() {
+        let text = format!(
+            "bench {} runs no engine: leave --engine and --require-gpu out",
+            arguments.what.name()
+        );
+        return Err(Failure::Usage(text));
     }
     if !matches!(arguments.what, Bench::Flight) && arguments.flight.is_given() {
         let text = "only bench flight takes --quick and --height-map: leave them out";

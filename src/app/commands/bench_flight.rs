@@ -11,6 +11,7 @@ use crate::app::Failure;
 use crate::app::progress::Progress;
 use crate::gpu::Gpu;
 use crate::run::Exit;
+use crate::run::bench::flight::FRAMES_PER_S;
 use crate::run::bench::flight::ground::FlownMap;
 use crate::run::bench::flight::plot::{frame_time_plot, load_plot, seeding_plot};
 use crate::run::bench::flight::seeding::CLUSTERS;
@@ -93,6 +94,13 @@ fn write_tables(bench: &FlightBench, out: &mut impl Write) -> io::Result<()> {
         bench.km2,
         bench.reach_m
     )?;
+    if bench.is_reduced() {
+        writeln!(
+            out,
+            "reduced for this adapter or by --quick: P15 draws 1920 x 1080; here all of {FRAMES_PER_S} frames \
+             of a second would be drawn on graphics hardware\n"
+        )?;
+    }
     writeln!(
         out,
         "{:>6} {:>10} {:>10} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10}",

@@ -11,7 +11,7 @@ use super::scene_file;
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
 use crate::app::progress::Progress;
-use crate::app::values::{number, whole};
+use crate::app::values::{density, number, whole};
 use crate::gpu::Gpu;
 use crate::render::{Animation, Picture, PictureTarget, Submission, Sun};
 use crate::run::{Exit, Stage};
@@ -61,6 +61,10 @@ pub struct Arguments {
     /// How plants are submitted: by the exact counts of triangles, or by the 32 bins of P15
     #[arg(long, value_enum, default_value = "exact")]
     submission: SubmissionName,
+    /// Draw this many times as many plants, 0.1 to 4; above 1 blades get more companions, other plants
+    /// stay as many
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = density)]
+    density: f32,
     /// Leave the shadows of plants on the ground out
     #[arg(long)]
     no_plant_shadows: bool,
@@ -99,6 +103,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     let mut stage = Stage::new(&gpu, &loaded, choice, PictureTarget::FORMAT, arguments.size)?;
     stage.camera(arguments.camera.as_deref())?;
     stage.sun = arguments.sun.unwrap_or(stage.sun);
+    stage.detail.density = arguments.density;
     stage.detail.shadows &= !arguments.no_plant_shadows;
     stage.detail.submission = match arguments.submission {
         SubmissionName::Exact => Submission::Exact,

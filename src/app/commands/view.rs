@@ -9,6 +9,7 @@ use super::outputs::make_folder;
 use super::render::size;
 use super::scene_file;
 use crate::app::device::EngineArguments;
+use crate::app::values::density;
 use crate::app::{Failure, window};
 use crate::run::Exit;
 
@@ -26,6 +27,10 @@ pub struct Arguments {
     /// Size of the window in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
     size: [u32; 2],
+    /// Draw this many times as many plants, 0.1 to 4; above 1 blades get more companions, other plants
+    /// stay as many
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = density)]
+    density: f32,
     /// Folder for pictures: those saved with F12, and the one written without a display; by default
     /// the current folder
     #[arg(long, value_name = "DIR")]
@@ -39,6 +44,7 @@ impl Default for Arguments {
             engine: EngineArguments::default(),
             assets: Vec::new(),
             size: [1280, 720],
+            density: 1.0,
             out: None,
         }
     }
@@ -55,6 +61,7 @@ pub fn run(arguments: Arguments, out: &mut impl Write) -> Result<Exit, Failure> 
         assets: arguments.assets,
         engine: arguments.engine.choice()?,
         size: arguments.size,
+        density: arguments.density,
         out: arguments.out.unwrap_or_else(|| PathBuf::from(".")),
     };
     window::open(&options, out)

@@ -60,6 +60,7 @@ fn with_picture(
         PictureTarget::FORMAT,
         options.size,
     )?;
+    stage.detail.density = options.density;
     while stage.meadow().time_s() < loaded.scene.duration_s {
         stage.tick()?;
     }

@@ -10,6 +10,7 @@ mod headless;
 mod input;
 mod keys;
 mod panels;
+mod plant_panel;
 mod play;
 mod scenes;
 mod screenshot;
@@ -38,6 +39,8 @@ pub struct Options {
     pub engine: EngineChoice,
     /// Width and height of the window's inside, in pixels.
     pub size: [u32; 2],
+    /// Factor of the number of plants drawn.
+    pub density: f32,
     /// Folder for pictures.
     pub out: PathBuf,
 }

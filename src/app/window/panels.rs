@@ -23,6 +23,13 @@ const WRONG: Color32 = Color32::from_rgb(255, 120, 104);
 pub enum Wish {
     Do(Command),
     Scene(usize),
+    /// Factor of the number of plants drawn.
+    Density(f32),
+    /// Another reference colour for a kind of plant: hue in degrees, saturation, value.
+    Colour {
+        kind: usize,
+        hsv: [f32; 3],
+    },
 }
 
 /// What the panels tell of the frame.
@@ -99,6 +106,8 @@ fn side_panel(ui: &mut egui::Ui, facts: &Facts<'_>, wishes: &mut Vec<Wish>) {
     scene_list(ui, play, wishes);
     ui.separator();
     measures(ui, facts);
+    ui.separator();
+    super::plant_panel::show(ui, play, wishes);
 }
 
 fn scene_list(ui: &mut egui::Ui, play: &Play, wishes: &mut Vec<Wish>) {

@@ -36,6 +36,7 @@ const SOFTWARE_DETAIL: BladeDetail = BladeDetail {
     reach_m: 40.0,
     tuft: 2,
     count: Count::Distance,
+    density: 1.0,
     submission: Submission::Exact,
     transition: Transition::Smooth,
     shadows: true,
@@ -115,6 +116,7 @@ impl Session {
         if gpu.adapter.is_software {
             play.stage.detail = SOFTWARE_DETAIL;
         }
+        play.stage.detail.density = options.density;
         let mut session = Self {
             ui: Ui::new(&gpu, &window),
             surface,
@@ -237,6 +239,8 @@ impl Session {
             match wish {
                 Wish::Do(command) => self.obey(command),
                 Wish::Scene(line) => self.choose(line),
+                Wish::Density(factor) => self.play.stage.detail.density = factor,
+                Wish::Colour { kind, hsv } => self.recolour(kind, hsv),
             }
         }
         Ok(self.after(acted, repaint_after))

@@ -4,6 +4,7 @@ use super::camera::CameraMode;
 use super::keys::Command;
 use super::session::Session;
 use crate::base::Vec3;
+use crate::scene::Likes;
 
 /// Distance of the point that the camera turns about, where it looks at nothing, in metres.
 const FAR_PIVOT_M: f64 = 8.0;
@@ -40,6 +41,18 @@ impl Session {
             Command::Help => self.shown.help = !self.shown.help,
             Command::CloseHelp => self.shown.help = false,
             Command::Screenshot => self.wants_picture = true,
+        }
+    }
+
+    /// Gives a kind of plant another reference colour; the meadow grows anew.
+    pub(super) fn recolour(&mut self, kind: usize, hsv: [f32; 3]) {
+        let species = &self.play.stage.meadow().scene.grass.species;
+        let Some(likes) = species.get(kind).and_then(|kind| kind.likes.clone()) else {
+            return;
+        };
+        let likes = Likes { hsv, ..likes };
+        if let Err(error) = self.play.stage.set_likes(&self.gpu, kind, likes) {
+            self.toasts.error(error);
         }
     }
 
