@@ -209,10 +209,13 @@ fn a_failing_scenario_leaves_a_bundle() {
         let png = std::fs::read(bundle.join("end.png")).expect("a picture of the end");
         assert!(png.starts_with(b"\x89PNG"));
     }
-    // Notes say why there is no picture.
+    // Notes say how to do the run again, and why there is no picture.
+    let notes = kept("notes.txt");
+    assert!(notes.contains("sward replay fails.recording"), "{notes}");
     assert_ne!(
-        bundle.join("notes.txt").exists(),
-        bundle.join("end.png").exists()
+        notes.contains("no end.png"),
+        bundle.join("end.png").exists(),
+        "{notes}"
     );
     // The bundle stands for itself: its assets are in it.
     std::fs::remove_dir_all(&assets).expect("the folder");
