@@ -26,8 +26,11 @@ fn stiffness_in_entries(fraction: f32) -> f32 {
     if knee < 0.0 {
         return fraction * last;
     }
-    let middle = f32(field.stiffness_entries / 2u);
-    if fraction < knee {
+    var middle = f32(field.stiffness_entries / 2u);
+    if knee == 0.0 || knee == 1.0 {
+        middle = knee * last;
+    }
+    if knee > 0.0 && fraction <= knee {
         return middle * (1.0 - sqrt(sqrt((knee - fraction) / knee)));
     }
     return middle + (last - middle) * sqrt(sqrt((fraction - knee) / (1.0 - knee)));

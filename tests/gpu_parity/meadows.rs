@@ -14,11 +14,16 @@ use sward::terrain::{ColourMap, HeightGrid};
 
 /// A field on bumpy ground with two kinds of plants and a density that is no whole number.
 pub fn bumpy_field(solver: &Solver) -> Result<Field, Failed> {
-    leaning_field(solver, Species::default().lean_deg)
+    let plain = Species::default();
+    leaning_field(solver, [plain.stiffness, [50.0, 400.0]], plain.lean_deg)
 }
 
-/// The same, the second kind of which leans by this many degrees.
-pub fn leaning_field(solver: &Solver, lean_deg: [f32; 2]) -> Result<Field, Failed> {
+/// The same, its kinds of these stiffnesses, the second of which leans by this many degrees.
+pub fn leaning_field(
+    solver: &Solver,
+    [first, second]: [[f32; 2]; 2],
+    lean_deg: [f32; 2],
+) -> Result<Field, Failed> {
     let mut ground = HeightGrid::flat(14, 11, 1.0);
     for (n, height) in ground.heights_m.iter_mut().enumerate() {
         *height = 2.3 + 0.8 * (TAU * n as f32 * 0.137).sin();
@@ -27,12 +32,15 @@ pub fn leaning_field(solver: &Solver, lean_deg: [f32; 2]) -> Result<Field, Faile
         density_per_m2: 203.7,
         seed: 77,
         species: vec![
-            Species::default(),
+            Species {
+                stiffness: first,
+                ..Species::default()
+            },
             Species {
                 name: "fescue".into(),
                 share: 0.4,
                 height_m: [0.08, 0.2],
-                stiffness: [50.0, 400.0],
+                stiffness: second,
                 lean_deg,
                 phototropic: Some(Phototropic {
                     light_deg: 150.0,

@@ -272,8 +272,21 @@ pub fn wind_poses_agree(device: &Device) -> Result<(), Failed> {
 /// 2.4e-4 of the angle's rise over half the axis (some 4 rad), 1e-3 rad or 4e-4 m of the longest
 /// blade. Few plants lie there: one whose fraction is 1e-3 off is wrong by a 60th of that.
 pub fn poses_about_the_knee_agree(device: &Device) -> Result<(), Failed> {
+    // The knee within the axis, at its end and at its start.
+    for stiffness in [
+        [[60.0, 160.0], [50.0, 400.0]],
+        [[8.0, 20.0], [30.0, 60.0]],
+        [[80.0, 160.0], [70.0, 400.0]],
+    ] {
+        let field = leaning_field(&Solver::default(), stiffness, [0.0, 16.0])?;
+        tips_about_the_knee(device, field)?;
+    }
+    Ok(())
+}
+
+fn tips_about_the_knee(device: &Device, field: Field) -> Result<(), Failed> {
     let mut tips = Difference::new("tips about the knee", "m");
-    let probed = probed_field(device, leaning_field(&Solver::default(), [0.0, 16.0])?)?;
+    let probed = probed_field(device, field)?;
     ensure(probed.field.table.log2_k.spacing != Spacing::Even, || {
         "the table has no knee".into()
     })?;
