@@ -105,7 +105,7 @@ fn edge_point(drawn: DrawnPlant, blade: Companion, node: u32, side: f32) -> Edge
     let pose = drawn_node(drawn, node);
     let along = f32(node) * field.segment_share;
     let reached = turned_level(pose.place - plant.root, blade.turn);
-    let centre = root_from_eye + reached * (grown * blade.size);
+    let centre = root_from_eye + reached * blade.size;
     let direction = turned_level(pose.direction, blade.turn);
     let azimuth = turned_level(vec3f(plant.azimuth.x, 0.0, plant.azimuth.y), blade.turn);
 
@@ -129,7 +129,9 @@ fn edge_point(drawn: DrawnPlant, blade: Companion, node: u32, side: f32) -> Edge
     let widened = max(LEAST_HALF_PX / seen_half_px, 1.0);
     let seen_across = unit_or(seen, unit_or(cross(direction, sight), across));
     let spread = mix(across, seen_across, saturate(widened - 1.0));
-    let edge = spread * (side * half_m * widened * taper(along) * sqrt(grown));
+    // A blade that comes or goes is a narrow one of full height: every sample it covers changes once. If
+    // it grew in length its whole curve would move, and flip as many samples to and fro.
+    let edge = spread * (side * half_m * widened * taper(along) * grown);
     let position = centre + edge;
 
     // A blade is bent across, along its midrib. Not where it is thin: samples beside its edges

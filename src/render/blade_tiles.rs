@@ -233,9 +233,9 @@ pub(super) fn drawn_tiles(input: &BladesInput<'_>, view: &View, picture: Size) -
         .collect()
 }
 
-/// Doublings of the distance from half that of full density; below 0 before that.
+/// Doublings of the distance from that of full density, the reference of P15 eq. 4; below 0 before that.
 fn level_at(detail: BladeDetail, distance_m: f64) -> f64 {
-    let relative = distance_m / (0.5 * f64::from(detail.full_m));
+    let relative = distance_m / f64::from(detail.full_m);
     libm::log2(relative.max(1e-3))
 }
 
@@ -321,8 +321,8 @@ mod tests {
         assert_eq!(detail_of(level_at(detail, 0.0)), 0);
         let at = |metres: f64| detail_of(level_at(detail, metres));
         assert!((0..500).all(|step| at(f64::from(step)) <= at(f64::from(step + 1))));
-        assert_eq!(at(0.49 * 12.0), 0);
-        assert_eq!(at(0.51 * 12.0), 1);
+        assert_eq!(at(0.99 * 12.0), 0);
+        assert_eq!(at(1.01 * 12.0), 1);
         assert_eq!(at(1e6), DETAILS - 1);
     }
 

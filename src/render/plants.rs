@@ -23,7 +23,7 @@ use super::view_group::ViewGroups;
 
 /// Details whose plants have shadows: those of plants that are nearer than twice
 /// [`BladeDetail::full_m`], at the end of which shadows have faded.
-const SHADOW_DETAILS: u32 = 3;
+const SHADOW_DETAILS: u32 = 2;
 
 /// Where plants hide more of the ground's sky than this, they hide the ground and the shadows on it, and
 /// cost a third of a frame for nothing to be seen.
