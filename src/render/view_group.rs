@@ -36,8 +36,9 @@ gpu_struct! {
     }
 }
 
-/// Light lost to the air, per metre: two thirds are lost after 1.6 km, as on a hazy summer day.
-const AIR_PER_M: f32 = 1.0 / 1600.0;
+/// Light lost to the air, per metre: two thirds are lost after 8 km, as on a clear summer day with some
+/// haze, so that a field of kilometres is seen from a kilometre above.
+const AIR_PER_M: f32 = 1.0 / 8000.0;
 /// Drift of the high clouds, in their pattern's units per second.
 const CLOUDS_PER_S: f64 = 0.0015;
 

@@ -7,7 +7,7 @@ use super::relative::Relative;
 use super::store::Row;
 use super::truth::Truth;
 use crate::base::statistics::median;
-use crate::gpu::knows_method;
+use crate::gpu::{GpuError, knows_method};
 use crate::run::compare::{Comparison, Plants};
 use crate::run::methods::NamedMethod;
 use crate::run::scenario::RunError;
@@ -90,6 +90,8 @@ struct Point {
     cpu: Timed,
     double: Option<Lane>,
     gpu: Option<Lane>,
+    /// Why the device's lane ended early.
+    refused: String,
     watch: Watch,
     total: Comparison,
     of_method: Comparison,
@@ -115,6 +117,7 @@ impl Point {
             double: double.map(lane).transpose()?,
             gpu: device.map(Kind::Device).map(lane).transpose()?,
             solver,
+            refused: String::new(),
             watch: Watch::default(),
             total: Comparison::default(),
             of_method: Comparison::default(),
@@ -138,14 +141,30 @@ impl Point {
                 self.of_method.frame(&exact, truth);
             }
         }
-        if let Some(gpu) = &mut self.gpu {
-            gpu.advance_to(end_s)?;
-            self.rounding.frame(&gpu.plants()?, &plants);
-        }
+        self.compare_device(end_s, &plants)?;
         if let Some(truth) = truth {
             self.total.frame(&plants, truth);
         }
         Ok(())
+    }
+
+    /// A driver that cannot run the kernels to their end says nothing about other points: its lane ends.
+    fn compare_device(&mut self, end_s: f64, cpu: &Plants) -> Result<(), RunError> {
+        let Some(gpu) = &mut self.gpu else {
+            return Ok(());
+        };
+        match gpu.advance_to(end_s).and_then(|()| gpu.plants()) {
+            Ok(plants) => {
+                self.rounding.frame(&plants, cpu);
+                Ok(())
+            }
+            Err(RunError::Gpu { source, .. }) if matches!(source, GpuError::CutShort { .. }) => {
+                self.refused = source.to_string();
+                self.gpu = None;
+                Ok(())
+            }
+            Err(error) => Err(error),
+        }
     }
 
     fn row(&self, loaded: &LoadedScene, default_ms: &[Option<f64>]) -> Row {
@@ -184,6 +203,7 @@ impl Point {
             rounding_rms_m: self.gpu.as_ref().and_then(|_| rms_m(&self.rounding)),
             precision_rms_m: self.double.as_ref().and_then(|_| rms_m(&self.precision)),
             method_rms_m: self.double.as_ref().and_then(|_| rms_m(&self.of_method)),
+            rounding_refused: self.refused.clone(),
         }
     }
 }

@@ -57,10 +57,12 @@ pub struct Row {
     pub precision_rms_m: Option<f64>,
     /// The same in `f64` − reference.
     pub method_rms_m: Option<f64>,
+    /// Why the device could not run the scene to its end; empty if it could, or was not asked.
+    pub rounding_refused: String,
 }
 
 /// Columns in the order they are written, which are the keys of [`Row`].
-const COLUMNS: [&str; 28] = [
+const COLUMNS: [&str; 29] = [
     "key",
     "program",
     "scene",
@@ -89,9 +91,17 @@ const COLUMNS: [&str; 28] = [
     "rounding_rms_m",
     "precision_rms_m",
     "method_rms_m",
+    "rounding_refused",
 ];
 /// Those of them that are texts; the others are numbers.
-const TEXTS: [&str; 5] = ["key", "program", "scene", "method", "family"];
+const TEXTS: [&str; 6] = [
+    "key",
+    "program",
+    "scene",
+    "method",
+    "family",
+    "rounding_refused",
+];
 /// Those without which a line tells nothing: every version of the file has them.
 const NEEDED: [&str; 3] = ["key", "scene", "method"];
 

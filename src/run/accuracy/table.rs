@@ -28,7 +28,7 @@ pub fn write_markdown(report: &Report, plots: bool, out: &mut impl Write) -> io:
     let summary = report.summary();
     write_choice(report, &summary, out)?;
     write_summary(report, &summary, plots, out)?;
-    write_split(&summary, out)?;
+    write_split(report, &summary, out)?;
     write_cost(report, out)?;
     if let Some(independent) = &report.independent {
         independent.write(out)?;
@@ -207,7 +207,7 @@ fn write_summary(
     writeln!(out)
 }
 
-fn write_split(summary: &[MethodSummary], out: &mut impl Write) -> io::Result<()> {
+fn write_split(report: &Report, summary: &[MethodSummary], out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
         "## Where the error comes from\n\n\
@@ -229,7 +229,16 @@ fn write_split(summary: &[MethodSummary], out: &mut impl Write) -> io::Result<()
             m.method
         )?;
     }
-    writeln!(out)
+    writeln!(out)?;
+    let rows = report.scenes.iter().flat_map(|scene| &scene.rows);
+    for row in rows.filter(|row| !row.rounding_refused.is_empty()) {
+        let (method, scene, why) = (&row.method, &row.scene, &row.rounding_refused);
+        writeln!(
+            out,
+            "Without the rounding of `{method}` in `{scene}`: {why}.\n"
+        )?;
+    }
+    Ok(())
 }
 
 fn write_cost(report: &Report, out: &mut impl Write) -> io::Result<()> {
