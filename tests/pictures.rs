@@ -79,7 +79,8 @@ impl Stage {
             map: &ColourMap::of_patches(terrain, &meadow.field.ground),
             soil_rgb: terrain.soil_rgb,
         };
-        renderer.set_scene(gpu, &meadow.field, &look, meadow.bodies.shapes())?;
+        let bodies = &meadow.bodies;
+        renderer.set_scene(gpu, &meadow.field, &look, bodies.shapes(), bodies.coated())?;
         Ok(Self {
             meadow,
             nodes,
