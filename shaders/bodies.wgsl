@@ -73,8 +73,9 @@ fn body_fragment(in: BodyFragment) -> @location(0) vec4f {
 
     let sun = frame.sun_direction;
     let facing = max(dot(normal, sun), 0.0);
+    let coat_open = exp(-3.6 * body.cover);
     // A coat shades what it grows on as a canopy does the ground (shared/plant_light.wgsl).
-    let reaches = sun_reaches(in.position_from_eye, normal) * exp(-3.6 * body.cover);
+    let reaches = sun_reaches(in.position_from_eye, normal) * coat_open;
     let sky_open = 1.0 - 0.85 * body.cover;
     let diffuse = albedo * (frame.sun_rgb * facing * reaches + ambient_light(normal) * sky_open);
 
@@ -89,6 +90,6 @@ fn body_fragment(in: BodyFragment) -> @location(0) vec4f {
     let highlight = roughness2 / (spread * spread) * fresnel / (4.0 * v_h * v_h);
     let mirrored = reflect(-to_eye, normal);
     let rim = 0.04 + 0.5 * pow(1.0 - n_v, 5.0);
-    let gloss = frame.sun_rgb * highlight * facing * reaches + ambient_light(mirrored) * (rim * (1.0 - body.cover));
+    let gloss = frame.sun_rgb * highlight * facing * reaches + ambient_light(mirrored) * (rim * coat_open);
     return vec4f(through_air(diffuse + gloss, in.position_from_eye), 1.0);
 }

@@ -50,7 +50,7 @@ fn outline(form: u32, along: f32) -> f32 {
 // the coat as a whole is shaded like what it grows on.
 fn coat_radiance(body: CoatBody, plant: PlacedPlant, facing: vec3f, along: f32, at: vec3f) -> vec3f {
     let lightness = 0.6 + 0.4 * byte_of(plant.shade, 0u) + 0.45 * plant.tone;
-    let dry = smoothstep(0.8, 1.0, byte_of(plant.shade, 1u)) * 0.5;
+    let dry = smoothstep(0.85, 1.0, byte_of(plant.shade, 1u)) * 0.35;
     let rgb = body.rgb * lightness * mix(0.8, 1.2, along);
     let grey = dot(rgb, vec3f(0.3, 0.6, 0.1));
     let surface = mix(rgb, grey * vec3f(1.5, 1.25, 0.45), dry);

@@ -196,6 +196,16 @@ fn plant_of_coat(body: CoatBody, on: CoatTriangle, own: u32, index: u32) -> Plac
     return plant;
 }
 
+// The width of the plants that are drawn makes up for most of those left out. A triangle that is seen
+// aslant lacks none for that: its plants hide each other.
+fn widening(body: CoatBody, on: CoatTriangle, count: f32) -> f32 {
+    let across = rotate(body.turn, cross(on.b - on.a, on.c - on.a));
+    let sight = rotate(body.turn, (on.a + on.b + on.c) / 3.0) + body.place_from_eye;
+    let facing = -dot(across, sight) / max(length(across) * length(sight), 1e-20);
+    let share = saturate(count / max(on.full * facing, 1e-6));
+    return 1.0 / max(pow(share, WIDEN_POWER), 1e-2);
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn place_coats(
     @builtin(workgroup_id) group: vec3u,
@@ -222,11 +232,13 @@ fn place_coats(
     let on = coat_triangles[body.first_triangle + own];
     let end = count + rounding_of(body.key, own);
     let places = places_of(count, end - count);
-    // The width of those that are drawn makes up for most of those left out.
-    let widen = 1.0 / max(pow(saturate(count / on.full), WIDEN_POWER), 1e-3);
+    let widen = widening(body, on, count);
+    // As `ramp_of`, but for triangles that are far smaller than the ground's: of few plants most would
+    // be small.
+    let ramp = max(0.2 * count, 0.2);
     for (var index = 0u; index < places; index++) {
         var plant = plant_of_coat(body, on, own, index);
-        var grown = shown_share(end, ramp_of(count), index);
+        var grown = shown_share(end, ramp, index);
         if coat_view.count.is_plain == 1u {
             grown = 1.0;
         }

@@ -10,6 +10,7 @@ use crate::gpu_struct;
 
 use super::camera::View;
 use super::coat::CoatLayer;
+use super::coat_place::CoatFrame;
 use super::error::RenderError;
 use super::pipeline::{DepthUse, Drawing, READ_STORAGE, bind_group, group_layout};
 use super::shadow::Caster;
@@ -149,7 +150,7 @@ impl BodiesLayer {
         gpu: &Gpu,
         view: &View,
         bodies: &[BodyInstance],
-        coats: Option<&CoatLayer>,
+        coats: Option<(&CoatLayer, &CoatFrame<'_>)>,
     ) -> Result<Vec<Caster>, RenderError> {
         let mut order: Vec<usize> = (0..bodies.len()).collect();
         order.sort_by_key(|&index| bodies[index].shape);
@@ -186,9 +187,7 @@ impl BodiesLayer {
                     range.pattern
                 },
                 rgb: body.rgb,
-                cover: coats
-                    .zip(body.coat)
-                    .map_or(0.0, |(coats, coat)| coats.cover(coat)),
+                cover: coats.map_or(0.0, |(coats, frame)| coats.cover(frame, body)),
             });
             casters.push(Caster {
                 centre_in_world: body.world_from_body.place,

@@ -54,6 +54,7 @@ pub(super) struct ShapeCoat {
     /// Place of the form among the buckets.
     pub(super) form: u32,
     pub(super) rgb: [f32; 3],
+    pub(super) per_m2: f32,
     /// Share of the sky that the plants hide at the surface.
     pub(super) cover: f32,
     pub(super) first_triangle: u32,
@@ -92,6 +93,7 @@ impl CoatScene {
                 ranges: CoatRanges::new(&one.coat, rounds),
                 form: form_index(one.coat.form),
                 rgb: one.coat.rgb,
+                per_m2: one.coat.per_m2,
                 cover: cover(&one.coat),
                 first_triangle: triangles.len() as u32,
                 triangles: own.len() as u32,

@@ -287,19 +287,18 @@ impl Renderer {
         let light = input.sun.daylight();
         let [columns, rows] = size;
         let picture = Size { columns, rows };
-        let casters = self
-            .bodies
-            .write(gpu, input.view, input.bodies, self.coats.as_ref())?;
+        let coat_frame = CoatFrame {
+            view: input.view,
+            picture,
+            bodies: input.bodies,
+            detail: self.coat_detail,
+            density: input.blades.map_or(1.0, |blades| blades.detail.density),
+        };
         if let Some(coats) = &mut self.coats {
-            let frame = CoatFrame {
-                view: input.view,
-                picture,
-                bodies: input.bodies,
-                detail: self.coat_detail,
-                density: input.blades.map_or(1.0, |blades| blades.detail.density),
-            };
-            coats.write(gpu, &frame)?;
+            coats.write(gpu, &coat_frame)?;
         }
+        let coats = self.coats.as_ref().map(|coats| (coats, &coat_frame));
+        let casters = (self.bodies).write(gpu, input.view, input.bodies, coats)?;
         let fit = ShadowFit::new(&light, input.view, &casters);
         let detail = input.blades.map(|blades| blades.detail);
         let frame = Frame::new(input.view, size, &light, &fit, detail, input.time_s);
