@@ -90,6 +90,6 @@ fn body_fragment(in: BodyFragment) -> @location(0) vec4f {
     let highlight = roughness2 / (spread * spread) * fresnel / (4.0 * v_h * v_h);
     let mirrored = reflect(-to_eye, normal);
     let rim = 0.04 + 0.5 * pow(1.0 - n_v, 5.0);
-    let gloss = frame.sun_rgb * highlight * facing * reaches + ambient_light(mirrored) * (rim * coat_open);
-    return vec4f(through_air(diffuse + gloss, in.position_from_eye), 1.0);
+    let gloss = frame.sun_rgb * highlight * facing * reaches + ambient_light(mirrored) * rim;
+    return vec4f(through_air(diffuse + gloss * coat_open, in.position_from_eye), 1.0);
 }

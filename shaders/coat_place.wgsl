@@ -233,8 +233,7 @@ fn place_coats(
     let end = count + rounding_of(body.key, own);
     let places = places_of(count, end - count);
     let widen = widening(body, on, count);
-    // As `ramp_of`, but for triangles that are far smaller than the ground's: of few plants most would
-    // be small.
+    // As `ramp_of`, but for triangles far smaller than the ground's: of few plants most would be small.
     let ramp = max(0.2 * count, 0.2);
     for (var index = 0u; index < places; index++) {
         var plant = plant_of_coat(body, on, own, index);

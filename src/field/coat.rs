@@ -120,6 +120,14 @@ pub fn drawn_count(
     by_projected_area(corners, view, per_px * density, on.full * density.min(1.0))
 }
 
+/// Share of its size at which plant `index` of a triangle of this count is drawn; above 0 for the first
+/// [`places`](super::count::places). As [`shown`](super::count::shown) but for triangles far smaller than
+/// the ground's: of few plants most would be small.
+pub fn grown(count: f32, rounding: f32, index: u32) -> f32 {
+    let inside = count + rounding - (index as f32 + 1.0);
+    (inside / (0.2 * count).max(0.2)).clamp(0.0, 1.0)
+}
+
 /// The triangles on which plants grow, in the order of the mesh's: those with more than
 /// [`MOST_ON_TRIANGLE`] plants are halved across their longest sides. Indices must name positions.
 pub fn coat_triangles(

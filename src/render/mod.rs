@@ -41,6 +41,7 @@ pub use blade_tiles::{BladeDetail, Count, Submission, Transition};
 pub use bodies::BodyInstance;
 pub use camera::{Frustum, View};
 pub use coat::{CoatDetail, DrawnCoats};
+pub use coat_place::PlacedPlant;
 pub use error::RenderError;
 pub use frame::{FrameInput, Renderer};
 pub use ground_look::GroundLook;
