@@ -141,6 +141,13 @@ impl CoatLayer {
         })
     }
 
+    /// Takes other coats in place of the old ones, and keeps what is compiled.
+    pub(super) fn set_scene(&mut self, scene: CoatScene, field: FieldBuffers) {
+        self.scene = scene;
+        self.field = field;
+        self.places.clear();
+    }
+
     /// Lists what this frame may draw.
     ///
     /// # Errors

@@ -152,6 +152,12 @@ impl CoatPlaces {
         })
     }
 
+    /// Nothing to place in the next frame.
+    pub(super) fn clear(&mut self) {
+        self.triangle_count = 0;
+        self.forms = [false; COAT_FORMS as usize];
+    }
+
     /// Whether the frame has no coats.
     pub(super) fn is_empty(&self) -> bool {
         self.triangle_count == 0
@@ -168,8 +174,7 @@ impl CoatPlaces {
         scene: &CoatScene,
         frame: &CoatFrame<'_>,
     ) -> Result<bool, RenderError> {
-        self.triangle_count = 0;
-        self.forms = [false; COAT_FORMS as usize];
+        self.clear();
         let (mut records, mut plants) = (Vec::new(), 0);
         for (number, body) in frame.bodies.iter().enumerate() {
             let Some(index) = body.coat else {

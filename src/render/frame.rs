@@ -131,14 +131,19 @@ impl Renderer {
         coats: &[CoatedShape],
     ) -> Result<(), RenderError> {
         self.bodies.set_shapes(gpu, shapes)?;
-        self.coats = match &self.field {
-            Some((field, rounds)) if !coats.is_empty() => {
-                let scene = CoatScene::new(gpu, *rounds, shapes, coats)?;
-                let (groups, field) = (&self.groups, field.clone());
-                Some(CoatLayer::new(gpu, groups, self.samples, scene, field)?)
-            }
-            _ => None,
+        let Some((field, rounds)) = self.field.as_ref().filter(|_| !coats.is_empty()) else {
+            self.coats = None;
+            return Ok(());
         };
+        let scene = CoatScene::new(gpu, *rounds, shapes, coats)?;
+        let field = field.clone();
+        match &mut self.coats {
+            Some(layer) => layer.set_scene(scene, field),
+            None => {
+                let (groups, samples) = (&self.groups, self.samples);
+                self.coats = Some(CoatLayer::new(gpu, groups, samples, scene, field)?);
+            }
+        }
         Ok(())
     }
 
