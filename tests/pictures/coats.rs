@@ -106,12 +106,24 @@ pub fn coats_grow_on_faces(gpu: &Gpu) -> Result<(), Failed> {
     hold(drawn == Default::default(), "plants without their body")
 }
 
-/// Without coats there are no kernels and no buffers for them.
+/// Without coats there are no kernels and no buffers for them, nor after the last one has gone; taken in
+/// again, they are as before.
 pub fn no_coats_cost_nothing(gpu: &Gpu) -> Result<(), Failed> {
     let mut stage = Stage::new(gpu, BARE, 0)?;
     stage.shoot(gpu, level())?;
+    let none = stage.renderer.drawn_coats(gpu)?;
+    hold(none.is_none(), "a scene without coats has buffers of coats")?;
+    let mut stage = Stage::new(gpu, COATED, 0)?;
+    let first = stage.shoot(gpu, level())?;
+    let (shapes, coats) = (stage.meadow.bodies.shapes(), stage.meadow.bodies.coated());
+    stage.renderer.set_shapes(gpu, shapes, coats)?;
+    stage.renderer.set_shapes(gpu, shapes, &[])?;
+    let none = stage.renderer.drawn_coats(gpu)?;
+    hold(none.is_none(), "buffers of coats stay")?;
+    stage.renderer.set_shapes(gpu, shapes, coats)?;
+    stage.renderer.set_shapes(gpu, shapes, coats)?;
     hold(
-        stage.renderer.drawn_coats(gpu)?.is_none(),
-        "buffers of coats",
+        stage.shoot(gpu, level())? == first,
+        "taken in again, coats differ",
     )
 }
