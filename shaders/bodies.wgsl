@@ -8,7 +8,7 @@ struct BodyRecord {
     place_from_eye: vec3f,
     pattern: f32, // strength of the two-tone pattern that shows a body's turning
     rgb: vec3f,
-    radius_m: f32,
+    cover: f32, // share of the sky that its coat hides
 }
 
 @group(3) @binding(0) var<storage, read> body_records: array<BodyRecord>;
@@ -73,8 +73,11 @@ fn body_fragment(in: BodyFragment) -> @location(0) vec4f {
 
     let sun = frame.sun_direction;
     let facing = max(dot(normal, sun), 0.0);
-    let reaches = sun_reaches(in.position_from_eye, normal);
-    let diffuse = albedo * (frame.sun_rgb * facing * reaches + ambient_light(normal));
+    let coat_open = exp(-3.6 * body.cover);
+    // A coat shades what it grows on as a canopy does the ground (shared/plant_light.wgsl).
+    let reaches = sun_reaches(in.position_from_eye, normal) * coat_open;
+    let sky_open = 1.0 - 0.85 * body.cover;
+    let diffuse = albedo * (frame.sun_rgb * facing * reaches + ambient_light(normal) * sky_open);
 
     // GGX with Schlick's Fresnel term and Kelemen's visibility; light is in units of pi.
     let half_way = normalize(sun + to_eye);
@@ -88,5 +91,5 @@ fn body_fragment(in: BodyFragment) -> @location(0) vec4f {
     let mirrored = reflect(-to_eye, normal);
     let rim = 0.04 + 0.5 * pow(1.0 - n_v, 5.0);
     let gloss = frame.sun_rgb * highlight * facing * reaches + ambient_light(mirrored) * rim;
-    return vec4f(through_air(diffuse + gloss, in.position_from_eye), 1.0);
+    return vec4f(through_air(diffuse + gloss * coat_open, in.position_from_eye), 1.0);
 }

@@ -116,6 +116,13 @@ fn numbers_out_of_range() {
         "(grass: (species: [(likes: ())], bare: [(), (), (), (), ()]))" => "1:40" "grass.bare": "at most 4";
         "(grass: (species: [(form: Flower(head_m: 0, petal_rgb: (1, 1, 1), centre_rgb: (1, 1, 0)))]))" => "1:42" "grass.species[0].form.head_m": "0.0001 to 1 m";
         "(grass: (species: [(form: Flower(head_m: 0.1, petals: 2, petal_rgb: (1, 1, 1), centre_rgb: (1, 1, 0)))]))" => "1:55" "grass.species[0].form.petals": "3 to 64";
+        body!("shape: Ball(radius_m: 1), coat: (form: Twig)") => "2:52" "bodies[0].coat.form": "`Twig`", "Leaf, Blade";
+        body!("shape: Ball(radius_m: 1), coat: (per_m2: -1)") => "2:54" "bodies[0].coat.per_m2": "is -1", "0 to 100000 plants/m2";
+        body!("shape: Ball(radius_m: 1), coat: (height_m: (0.2, 0.1))") => "2:56" "bodies[0].coat.height_m": "smaller value first";
+        body!("shape: Ball(radius_m: 1), coat: (width_m: (0, 0.1))") => "2:56" "bodies[0].coat.width_m[0]": "0.0001 to 1 m";
+        body!("shape: Ball(radius_m: 1), coat: (rgb: (0, 0, 2))") => "2:58" "bodies[0].coat.rgb[2]": "is 2";
+        body!("shape: Ball(radius_m: 1), coat: (lean_deg: (0, 91))") => "2:60" "bodies[0].coat.lean_deg[1]": "0 to 90 degrees";
+        body!("shape: Ball(radius_m: 1), coat: (lean: 3)") => "2:46" "bodies[0].coat.lean": "no known key", "lean_deg";
         "(terrain: (base_map: \"none.png\"))" => "1:22" "terrain.base_map": "none.png";
         "(terrain: (lush_rgb: (0, 2, 0)))" => "1:26" "terrain.lush_rgb[1]": "is 2", "0 to 1";
         "(terrain: (ground: Flat(size_m: (8, 0))))" => "1:37" "terrain.ground.size_m[1]": "is 0";
@@ -195,7 +202,18 @@ fn counts_over_budget() {
         "(grass: (density_per_m2: 10000), solver: (tile_m: 32, seeding_cell_m: 8),\n terrain: (ground: Flat(size_m: (64, 64), spacing_m: 8)))" => "1:26" "grass.density_per_m2": "10240000 plants in a tile", "65536";
         "(solver: (tile_m: 8))" => "1:19" "solver.tile_m": "is 8 m", "0.5 m", "write 2 m";
         "(terrain: (ground: Flat(size_m: (5000, 5000), spacing_m: 2)))" => "1:20" "terrain.ground": "25000000 tiles", "16777216";
+        // 24 m2 a box; then 4π m2 a ball, in the script too.
+        body!("shape: Box(size_m: (2, 2, 2)), coat: (per_m2: 50000)") => "2:59" "bodies[0].coat.per_m2": "is 50000", "1200000 plants on 24.000 m2", "1048576";
+        "(bodies: [(name: \"a\", shape: Ball(radius_m: 1), coat: (per_m2: 70000))],\n script: [(at_s: 1, action: Spawn(name: \"b\", shape: Ball(radius_m: 1), coat: (per_m2: 20000)))])" => "2:87" "script[0].action.coat.per_m2": "251327 plants", "makes 1130973", "1048576";
     }
+    let coated = |n: usize| format!("(shape: Ball(radius_m: 0.1), name: \"b{n}\", coat: ()),");
+    let many: String = (0..1000).map(coated).collect();
+    let text = parse_scene("many", &format!("(bodies: [{many}])"), &[]).expect_err("too many");
+    assert!(
+        text.to_string()
+            .contains("more than the limit of 1048576; use a coarser mesh"),
+        "{text}"
+    );
     let many = "(shape: Ball(radius_m: 1), name: \"b\"),".repeat(4097);
     let text = parse_scene("many", &format!("(bodies: [{many}])"), &[]).expect_err("too many");
     assert!(text.to_string().contains("4097 bodies"), "{text}");

@@ -15,6 +15,8 @@ use sward::scene::Scene;
 use sward::sim::{Grass, Meadow, tick};
 use sward::terrain::ColourMap;
 
+#[path = "pictures/coats.rs"]
+mod coats;
 #[path = "pictures/counted.rs"]
 mod counted;
 
@@ -46,6 +48,9 @@ const CHECKS: &[(&str, Check)] = &[
         "density_is_a_factor_of_the_prefix",
         counted::density_is_a_factor_of_the_prefix,
     ),
+    ("coats_grow_outwards", coats::coats_grow_outwards),
+    ("coats_grow_on_faces", coats::coats_grow_on_faces),
+    ("no_coats_cost_nothing", coats::no_coats_cost_nothing),
     (
         "what_cannot_be_drawn_is_refused",
         what_cannot_be_drawn_is_refused,
@@ -79,7 +84,8 @@ impl Stage {
             map: &ColourMap::of_patches(terrain, &meadow.field.ground),
             soil_rgb: terrain.soil_rgb,
         };
-        renderer.set_scene(gpu, &meadow.field, &look, meadow.bodies.shapes())?;
+        let bodies = &meadow.bodies;
+        renderer.set_scene(gpu, &meadow.field, &look, bodies.shapes(), bodies.coated())?;
         Ok(Self {
             meadow,
             nodes,

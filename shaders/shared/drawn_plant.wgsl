@@ -46,9 +46,6 @@ struct PlantLook {
 @group(3) @binding(5) var<storage, read> sorted: array<vec4u>;
 @group(3) @binding(6) var<storage, read> totals: array<u32, BUCKETS>;
 
-// Half the least width of what is drawn, in pixels.
-const LEAST_HALF_PX = 0.46;
-
 struct DrawnPlant {
     tile: DrawnTile,
     plant: Plant,

@@ -1,8 +1,11 @@
 // Light on plants: P15 section 2.4.
-#import "shared/drawn_plant.wgsl"
+#import "shared/field.wgsl"
 #import "shared/frame.wgsl"
 #import "shared/light.wgsl"
 #import "shared/shadow.wgsl"
+
+// Half the least width of what is drawn, in pixels.
+const LEAST_HALF_PX = 0.46;
 
 // Eq. 13: light that comes through a leaf, a slab of unit thickness.
 fn transmitted(towards_sun: f32, thickness: f32) -> f32 {

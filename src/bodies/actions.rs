@@ -6,6 +6,7 @@ use crate::scene::{Action, Body, Shape, limits};
 use super::actor::{Actor, Control, Piece, collider, first_pose, radians, rigid_body};
 use super::error::BodyError;
 use super::frame::to_rapier;
+use super::library::CoatedShape;
 use super::vehicle::{Build, Controls, Vehicle};
 use super::world::Bodies;
 
@@ -71,8 +72,11 @@ impl Bodies {
         Ok(named.name)
     }
 
-    /// Makes the shapes of a body's pieces, so that spawning it later takes no time.
-    pub(super) fn prepare_shapes(&mut self, body: &Body) -> Result<Vec<u32>, BodyError> {
+    /// Makes the shapes of a body's pieces and their coats, so that spawning it later takes no time.
+    pub(super) fn prepare_shapes(
+        &mut self,
+        body: &Body,
+    ) -> Result<Vec<(u32, Option<u32>)>, BodyError> {
         let mut index = |shape: &Shape| {
             self.library
                 .index_of(shape)
@@ -81,10 +85,15 @@ impl Bodies {
                     source,
                 })
         };
-        match Build::of(&body.shape) {
-            Some(build) => build.pieces().iter().map(index).collect(),
-            None => Ok(vec![index(&body.shape)?]),
-        }
+        let shapes: Vec<u32> = match Build::of(&body.shape) {
+            Some(build) => build.pieces().iter().map(index).collect::<Result<_, _>>()?,
+            None => vec![index(&body.shape)?],
+        };
+        let with_coat = |shape| {
+            let coated = body.coat.map(|coat| CoatedShape { shape, coat });
+            (shape, coated.map(|one| self.library.index_of_coat(one)))
+        };
+        Ok(shapes.into_iter().map(with_coat).collect())
     }
 
     pub(super) fn insert(&mut self, body: &Body, now_s: f64) -> Result<(), BodyError> {
@@ -108,7 +117,7 @@ impl Bodies {
                 name: body.name.clone(),
             });
         }
-        let collider = collider(body, shapes[0], &self.library)?;
+        let collider = collider(body, shapes[0].0, &self.library)?;
         let pose = first_pose(body, &control, &self.ground, now_s);
         let rigid = rigid_body(body, &control, pose, &self.frame);
         let next = self.ids.values().max().map_or(0, |&id| id + 1);
@@ -130,7 +139,7 @@ impl Bodies {
             vehicle: build.map(|build| Vehicle::new(handle, &build, grip)),
             pieces: shapes
                 .iter()
-                .map(|&shape| Piece::new(shape, pose))
+                .map(|&(shape, coat)| Piece::new(shape, coat, pose))
                 .collect(),
             grass_collider: body.collider,
             rgb: body.rgb,

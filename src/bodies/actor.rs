@@ -41,6 +41,8 @@ pub(super) enum Control {
 pub(super) struct Piece {
     /// Index into the shape library.
     pub shape: u32,
+    /// Index of the coat on it.
+    pub coat: Option<u32>,
     pub from: Pose<f64>,
     pub to: Pose<f64>,
     /// It came to `from` by a jump.
@@ -51,9 +53,10 @@ pub(super) struct Piece {
 
 impl Piece {
     /// One that appears at a pose before the next sub-step.
-    pub fn new(shape: u32, pose: Pose<f64>) -> Self {
+    pub fn new(shape: u32, coat: Option<u32>, pose: Pose<f64>) -> Self {
         Self {
             shape,
+            coat,
             from: pose,
             to: pose,
             placed: true,
@@ -78,7 +81,7 @@ impl Piece {
 
     /// Is at once somewhere else before the next sub-step.
     pub fn put(&mut self, to: Pose<f64>) {
-        *self = Self::new(self.shape, to);
+        *self = Self::new(self.shape, self.coat, to);
     }
 }
 

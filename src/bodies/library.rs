@@ -2,12 +2,20 @@
 
 use rapier3d::prelude::SharedShape;
 
-use crate::scene::Shape;
+use crate::scene::{Coat, Shape};
 
 use super::collider::shared_shape;
 use super::error::ShapeError;
 use super::shape::RigidShape;
 use super::solids::{Meshes, rigid_shape};
+
+/// A shape on which plants grow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoatedShape {
+    /// Index into the shape library.
+    pub shape: u32,
+    pub coat: Coat,
+}
 
 /// Shapes by index; entries are only ever appended.
 pub(super) struct ShapeLibrary {
@@ -15,6 +23,7 @@ pub(super) struct ShapeLibrary {
     keys: Vec<Shape>,
     shapes: Vec<RigidShape>,
     colliders: Vec<SharedShape>,
+    coated: Vec<CoatedShape>,
 }
 
 impl ShapeLibrary {
@@ -24,6 +33,7 @@ impl ShapeLibrary {
             keys: Vec::new(),
             shapes: Vec::new(),
             colliders: Vec::new(),
+            coated: Vec::new(),
         }
     }
 
@@ -43,8 +53,22 @@ impl ShapeLibrary {
         Ok(self.keys.len() as u32 - 1)
     }
 
+    /// The index of a coat on one of the shapes, new or not.
+    pub fn index_of_coat(&mut self, coated: CoatedShape) -> u32 {
+        let known = self.coated.iter().position(|other| *other == coated);
+        let index = known.unwrap_or(self.coated.len());
+        if known.is_none() {
+            self.coated.push(coated);
+        }
+        index as u32
+    }
+
     pub fn shapes(&self) -> &[RigidShape] {
         &self.shapes
+    }
+
+    pub fn coated(&self) -> &[CoatedShape] {
+        &self.coated
     }
 
     /// The collider of an index that this library gave.

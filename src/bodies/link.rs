@@ -20,6 +20,8 @@ pub struct Link {
     pub collider: Collider,
     /// Linear RGB.
     pub rgb: [f32; 3],
+    /// Index into [`Bodies::coated`](super::Bodies::coated).
+    pub coat: Option<u32>,
 }
 
 impl Link {

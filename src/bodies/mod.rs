@@ -24,6 +24,7 @@ mod world;
 
 pub use error::{BodyError, ShapeError};
 pub use frame::turn_of_degrees;
+pub use library::CoatedShape;
 pub use link::Link;
 pub use shape::{ConvexPart, DrawMesh, RigidShape, Solid};
 pub use snapshot::BodiesState;

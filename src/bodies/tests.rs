@@ -22,6 +22,7 @@ pub(super) fn body(name: &str, shape: Shape, position_m: [f64; 3]) -> Body {
         damping: [0.0; 2],
         collider: Collider::Auto,
         rgb: [0.5; 3],
+        coat: None,
     }
 }
 

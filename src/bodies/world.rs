@@ -14,7 +14,7 @@ use super::actor::{Actor, Control};
 use super::collider;
 use super::error::BodyError;
 use super::frame::{Frame, from_rapier, to_rapier};
-use super::library::ShapeLibrary;
+use super::library::{CoatedShape, ShapeLibrary};
 use super::link::Link;
 use super::shape::RigidShape;
 
@@ -152,6 +152,11 @@ impl Bodies {
     /// Every shape so far. Indices stay valid; new shapes are appended.
     pub fn shapes(&self) -> &[RigidShape] {
         self.library.shapes()
+    }
+
+    /// Every coat on one of the shapes so far; as for [`Bodies::shapes`].
+    pub fn coated(&self) -> &[CoatedShape] {
+        self.library.coated()
     }
 
     /// The id of a name that the scene knows, or that was dropped since.
@@ -375,6 +380,7 @@ impl Bodies {
                 placed: piece.placed,
                 collider: actor.grass_collider,
                 rgb: actor.rgb,
+                coat: piece.coat,
             }));
         }
     }

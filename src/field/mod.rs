@@ -3,6 +3,7 @@
 pub mod blade_shape;
 pub mod blade_table;
 pub mod clusters;
+pub mod coat;
 pub mod count;
 pub mod grid;
 pub mod in_view;

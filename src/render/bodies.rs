@@ -9,6 +9,8 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::gpu_struct;
 
 use super::camera::View;
+use super::coat::CoatLayer;
+use super::coat_place::CoatFrame;
 use super::error::RenderError;
 use super::pipeline::{DepthUse, Drawing, READ_STORAGE, bind_group, group_layout};
 use super::shadow::Caster;
@@ -22,6 +24,8 @@ pub struct BodyInstance {
     pub world_from_body: Pose<f64>,
     /// Linear RGB.
     pub rgb: [f32; 3],
+    /// Index into the coats given to the renderer.
+    pub coat: Option<u32>,
 }
 
 gpu_struct! {
@@ -30,7 +34,7 @@ gpu_struct! {
         place_from_eye: [f32; 3],
         pattern: f32,
         rgb: [f32; 3],
-        radius_m: f32,
+        cover: f32,
     }
 }
 
@@ -136,7 +140,7 @@ impl BodiesLayer {
         Ok(())
     }
 
-    /// Writes this frame's records, sorted by shape. Returns balls around the bodies, for the
+    /// Writes this frame's records, sorted by shape; coats darken what is under them. Returns balls around the bodies, for the
     /// shadow map.
     ///
     /// # Errors
@@ -146,6 +150,7 @@ impl BodiesLayer {
         gpu: &Gpu,
         view: &View,
         bodies: &[BodyInstance],
+        coats: Option<(&CoatLayer, &CoatFrame<'_>)>,
     ) -> Result<Vec<Caster>, RenderError> {
         let mut order: Vec<usize> = (0..bodies.len()).collect();
         order.sort_by_key(|&index| bodies[index].shape);
@@ -175,9 +180,14 @@ impl BodiesLayer {
             records.push(BodyRecord {
                 turn: body.world_from_body.turn.cast::<f32>().to_array(),
                 place_from_eye: view.from_eye(body.world_from_body.place),
-                pattern: range.pattern,
+                // Under a coat there is nothing to be seen of it.
+                pattern: if body.coat.is_some() {
+                    0.0
+                } else {
+                    range.pattern
+                },
                 rgb: body.rgb,
-                radius_m: range.radius_m as f32,
+                cover: coats.map_or(0.0, |(coats, frame)| coats.cover(frame, body)),
             });
             casters.push(Caster {
                 centre_in_world: body.world_from_body.place,

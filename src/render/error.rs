@@ -33,6 +33,13 @@ pub enum RenderError {
         known: usize,
     },
 
+    #[error("body {body} has coat {coat}, but only {known} coats were given")]
+    UnknownCoat {
+        body: usize,
+        coat: u32,
+        known: usize,
+    },
+
     #[error("{what} is {found}; {wanted}")]
     BadInput {
         what: &'static str,

@@ -1,6 +1,6 @@
 //! One frame as a list.
 
-use crate::bodies::RigidShape;
+use crate::bodies::{CoatedShape, RigidShape};
 use crate::field::Field;
 use crate::gpu::{FieldBuffers, Gpu, PassTimer};
 use crate::terrain::bintree::MeshChange;
@@ -8,6 +8,9 @@ use crate::terrain::bintree::MeshChange;
 use super::blade_tiles::Size;
 use super::bodies::{BodiesLayer, BodyInstance};
 use super::camera::View;
+use super::coat::{CoatDetail, CoatLayer, DrawnCoats};
+use super::coat_place::CoatFrame;
+use super::coat_scene::CoatScene;
 use super::error::RenderError;
 use super::ground_look::{GroundLook, GroundTexture};
 use super::ground_mesh::TerrainDetail;
@@ -29,6 +32,10 @@ pub struct Renderer {
     shadow: ShadowMap,
     bodies: BodiesLayer,
     plants: PlantsLayer,
+    /// None until a scene has coats.
+    coats: Option<CoatLayer>,
+    /// What the kernels of coats bind beside their own buffers, and rounds of Philox.
+    field: Option<(FieldBuffers, u32)>,
     terrain: TerrainLayer,
     sky: SkyLayer,
     overlay: OverlayLayer,
@@ -38,6 +45,8 @@ pub struct Renderer {
     samples: u32,
     /// How finely the ground of a large field is drawn from the next frame on.
     pub terrain_detail: TerrainDetail,
+    /// How many plants of coats are drawn from the next frame on.
+    pub coat_detail: CoatDetail,
 }
 
 /// Everything that may change from one frame to the next.
@@ -74,6 +83,8 @@ impl Renderer {
         Ok(Self {
             bodies: BodiesLayer::new(gpu, &groups, samples)?,
             plants: PlantsLayer::new(gpu, &groups, samples)?,
+            coats: None,
+            field: None,
             terrain: TerrainLayer::new(gpu, &groups, samples)?,
             sky: SkyLayer::new(gpu, &groups, samples)?,
             overlay: OverlayLayer::new(gpu, &groups, samples)?,
@@ -84,10 +95,11 @@ impl Renderer {
             shadow,
             samples,
             terrain_detail: TerrainDetail::default(),
+            coat_detail: CoatDetail::of_device(gpu),
         })
     }
 
-    /// Takes a scene's ground, plants and body shapes in place of the old ones.
+    /// Takes a scene's ground, plants, body shapes and coats of them in place of the old ones.
     ///
     /// # Errors
     /// Bad colour maps, data larger than the device can bind.
@@ -97,21 +109,42 @@ impl Renderer {
         field: &Field,
         look: &GroundLook<'_>,
         shapes: &[RigidShape],
+        coats: &[CoatedShape],
     ) -> Result<(), RenderError> {
         let colour = GroundTexture::new(gpu, look.map)?;
         let buffers = FieldBuffers::new(gpu, &FieldBuffers::layout(gpu), field)?;
         self.terrain
             .set_ground(gpu, field, &buffers, &colour, look.soil_rgb)?;
+        self.field = Some((buffers.clone(), field.seeds.rounds));
         self.plants.set_field(field, buffers, &colour);
-        self.set_shapes(gpu, shapes)
+        self.set_shapes(gpu, shapes, coats)
     }
 
-    /// Takes new body shapes alone, for a body that is added while the scene runs.
+    /// Takes new body shapes and coats alone, for a body that is added while the scene runs.
     ///
     /// # Errors
     /// Data larger than the device can bind.
-    pub fn set_shapes(&mut self, gpu: &Gpu, shapes: &[RigidShape]) -> Result<(), RenderError> {
-        Ok(self.bodies.set_shapes(gpu, shapes)?)
+    pub fn set_shapes(
+        &mut self,
+        gpu: &Gpu,
+        shapes: &[RigidShape],
+        coats: &[CoatedShape],
+    ) -> Result<(), RenderError> {
+        self.bodies.set_shapes(gpu, shapes)?;
+        let Some((field, rounds)) = self.field.as_ref().filter(|_| !coats.is_empty()) else {
+            self.coats = None;
+            return Ok(());
+        };
+        let scene = CoatScene::new(gpu, *rounds, shapes, coats)?;
+        let field = field.clone();
+        match &mut self.coats {
+            Some(layer) => layer.set_scene(scene, field),
+            None => {
+                let (groups, samples) = (&self.groups, self.samples);
+                self.coats = Some(CoatLayer::new(gpu, groups, samples, scene, field)?);
+            }
+        }
+        Ok(())
     }
 
     /// Makes targets for another picture size; the same size costs nothing.
@@ -140,6 +173,16 @@ impl Renderer {
         Ok(self.plants.read_counts(gpu)?)
     }
 
+    /// What the last frame drew of the coats, read back from the device: for tests and benches, since it
+    /// waits. `None` where the scene has none, and so no kernels and buffers for them.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn drawn_coats(&self, gpu: &Gpu) -> Result<Option<DrawnCoats>, RenderError> {
+        let read = self.coats.as_ref().map(|coats| coats.read(gpu));
+        Ok(read.transpose()?)
+    }
+
     /// What the last frame's ground mesh is; `None` for a small field, which is drawn in full.
     pub fn ground_mesh(&self) -> Option<MeshChange> {
         self.terrain.mesh_change()
@@ -166,6 +209,9 @@ impl Renderer {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
 
         self.plants.sort(gpu, &mut encoder, timer);
+        if let Some(coats) = &self.coats {
+            coats.place(gpu, &mut encoder, timer);
+        }
         let mut pass = self.shadow.begin(&mut encoder, timer.render("shadow"));
         self.groups.bind_unlit(&mut pass);
         self.bodies.draw_shadow(&mut pass);
@@ -174,6 +220,9 @@ impl Renderer {
         let mut pass = self.targets.begin(&mut encoder, timer.render("scene"));
         self.groups.bind(&mut pass);
         self.bodies.draw(&mut pass);
+        if let Some(coats) = &self.coats {
+            coats.draw(&mut pass);
+        }
         self.plants.draw(&mut pass);
         self.groups.bind(&mut pass);
         self.terrain.draw(&mut pass);
@@ -241,7 +290,20 @@ impl Renderer {
     fn write(&mut self, gpu: &Gpu, input: &FrameInput<'_>) -> Result<(), RenderError> {
         let size = self.targets.size;
         let light = input.sun.daylight();
-        let casters = self.bodies.write(gpu, input.view, input.bodies)?;
+        let [columns, rows] = size;
+        let picture = Size { columns, rows };
+        let coat_frame = CoatFrame {
+            view: input.view,
+            picture,
+            bodies: input.bodies,
+            detail: self.coat_detail,
+            density: input.blades.map_or(1.0, |blades| blades.detail.density),
+        };
+        if let Some(coats) = &mut self.coats {
+            coats.write(gpu, &coat_frame)?;
+        }
+        let coats = self.coats.as_ref().map(|coats| (coats, &coat_frame));
+        let casters = (self.bodies).write(gpu, input.view, input.bodies, coats)?;
         let fit = ShadowFit::new(&light, input.view, &casters);
         let detail = input.blades.map(|blades| blades.detail);
         let frame = Frame::new(input.view, size, &light, &fit, detail, input.time_s);
@@ -251,8 +313,6 @@ impl Renderer {
             .write(gpu, input.view, size, self.terrain_detail, blades)?;
         if let Some(blades) = &input.blades {
             blades.detail.check()?;
-            let [columns, rows] = size;
-            let picture = Size { columns, rows };
             self.plants.write(gpu, input.view, picture, blades)?;
         } else {
             self.plants.clear();

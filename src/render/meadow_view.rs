@@ -31,6 +31,7 @@ pub fn bodies_at(meadow: &Meadow, between: f64) -> Vec<BodyInstance> {
             shape: link.shape,
             world_from_body: link.from.lerp(link.to, between.clamp(0.0, 1.0)),
             rgb: link.rgb,
+            coat: link.coat,
         })
         .collect()
 }

@@ -9,6 +9,9 @@ mod blades;
 mod bodies;
 mod camera;
 mod canopy;
+mod coat;
+mod coat_place;
+mod coat_scene;
 mod error;
 mod flowers;
 mod frame;
@@ -37,6 +40,8 @@ pub use active_nodes::ActiveNodes;
 pub use blade_tiles::{BladeDetail, Count, Submission, Transition};
 pub use bodies::BodyInstance;
 pub use camera::{Frustum, View};
+pub use coat::{CoatDetail, DrawnCoats};
+pub use coat_place::PlacedPlant;
 pub use error::RenderError;
 pub use frame::{FrameInput, Renderer};
 pub use ground_look::GroundLook;
@@ -61,6 +66,7 @@ use crate::gpu::wgsl::WgslFile;
 use crate::wgsl_file;
 use blade_tiles::WIDEN_POWER;
 use blades::{TUFT_RADIUS_M, TUFT_TURNS};
+use coat_place::{COAT_BUCKETS, COAT_DETAILS, COAT_VERTICES, NO_COAT_BUCKET};
 use ground_look::{LOOK_BARE, LOOK_GRASS, LOOK_GRAVEL, LOOK_LITTER, TASTE_ROWS};
 use plant_form::{BUCKET_VERTICES, BUCKETS, DETAILS, FORM_BLADE, FORM_COUNT};
 use seed_triangles::{
@@ -76,7 +82,9 @@ const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// The shaders of this layer and what only they import.
 pub const SHADERS: &[WgslFile] = &[
-    wgsl_file!("shared/count.wgsl", ANCHOR_CELLS, COUNT_WORD, NEAR_M),
+    wgsl_file!("shared/area_count.wgsl", NEAR_M),
+    wgsl_file!("shared/coat.wgsl"),
+    wgsl_file!("shared/count.wgsl", ANCHOR_CELLS, COUNT_WORD),
     wgsl_file!(
         "shared/drawn_plant.wgsl",
         BUCKET_VERTICES,
@@ -93,6 +101,18 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/shadow.wgsl"),
     wgsl_file!("blades.wgsl", TUFT_RADIUS_M, TUFT_TURNS),
     wgsl_file!("bodies.wgsl"),
+    wgsl_file!("coat.wgsl", COAT_VERTICES),
+    wgsl_file!(
+        "coat_place.wgsl",
+        COAT_BUCKETS,
+        COAT_DETAILS,
+        COAT_VERTICES,
+        COUNT_WORD,
+        LEAST_GROWN,
+        NO_COAT_BUCKET,
+        WIDEN_POWER,
+        WORKGROUP
+    ),
     wgsl_file!("flowers.wgsl"),
     wgsl_file!("gravel.wgsl"),
     wgsl_file!("leaves.wgsl"),
@@ -154,6 +174,11 @@ pub fn layouts() -> Vec<StructLayout> {
         view_group::Frame::layout(),
         blade_tiles::DrawnTile::layout(),
         bodies::BodyRecord::layout(),
+        coat_place::CoatBody::layout(),
+        coat::CoatLook::layout(),
+        coat_place::CoatView::layout(),
+        coat_place::PlacedPlant::layout(),
+        coat_scene::CoatTriangle::layout(),
         overlay::OverlayBox::layout(),
         plants::Bucket::layout(),
         plants::FormUniform::layout(),

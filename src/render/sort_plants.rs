@@ -46,6 +46,25 @@ gpu_struct! {
     }
 }
 
+impl CountUniform {
+    /// P15 eq. 1 in a picture of this many rows; the ceiling is each triangle's own.
+    pub(super) fn by_projected_area(view: &View, rows: u32, per_px: f32) -> Self {
+        Self {
+            right: view.right().to_f32(),
+            pixel_rad: view.pixel_rad(rows),
+            up: view.up().to_f32(),
+            per_px,
+            forward: view.forward.to_f32(),
+            rule: COUNT_BY_PROJECTED_AREA,
+            most: 0.0,
+            is_plain: 0,
+            spare_a: [0.0; 2],
+            judge_from_eye: [0.0; 3],
+            spare_b: 0.0,
+        }
+    }
+}
+
 gpu_struct! {
     pub(super) struct SortUniform {
         clip_from_eye: [[f32; 4]; 4],

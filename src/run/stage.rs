@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::bodies::Bodies;
 use crate::gpu::{Gpu, GpuError, GrassKernels, PassTimer, TickError};
 use crate::render::{
     ActiveNodes, BladeCounts, BladeDetail, BladesInput, Exposure, FrameInput, GroundLook,
@@ -20,7 +21,7 @@ use super::timeline::Timeline;
 /// have to catch up.
 const LONGEST_FRAME_S: f64 = 0.25;
 /// Passes of a frame that are timed.
-const DRAWN_PASSES: usize = 8;
+const DRAWN_PASSES: usize = 11;
 
 /// A scene with its engine, and the renderer that shows it.
 pub struct Stage {
@@ -34,7 +35,7 @@ pub struct Stage {
     timer: PassTimer,
     timeline: Timeline,
     /// Body shapes the renderer knows.
-    shapes: usize,
+    shapes: [usize; 2],
     pub sun: Sun,
     pub exposure: Exposure,
     pub detail: BladeDetail,
@@ -109,7 +110,7 @@ impl Stage {
             nodes: ActiveNodes::new(gpu)?,
             timer: PassTimer::new(gpu, DRAWN_PASSES),
             timeline: new_timeline(&meadow),
-            shapes: meadow.bodies.shapes().len(),
+            shapes: known_shapes(&meadow.bodies),
             sun: Sun::default(),
             exposure: Exposure::default(),
             detail: BladeDetail::of_device(gpu),
@@ -135,7 +136,7 @@ impl Stage {
         let (meadow, engine) = lay_out(gpu, &self.kernels, loaded, choice)?;
         show(gpu, &mut self.renderer, &meadow, &loaded.assets)?;
         self.timeline = new_timeline(&meadow);
-        self.shapes = meadow.bodies.shapes().len();
+        self.shapes = known_shapes(&meadow.bodies);
         self.loaded = loaded.clone();
         self.meadow = meadow;
         self.engine = engine;
@@ -300,10 +301,12 @@ impl Stage {
 
     /// Hands the renderer the shapes of bodies that came up since the last picture.
     fn take_in_shapes(&mut self, gpu: &Gpu) -> Result<(), RenderError> {
-        let shapes = self.meadow.bodies.shapes();
-        if shapes.len() > self.shapes {
-            self.renderer.set_shapes(gpu, shapes)?;
-            self.shapes = shapes.len();
+        let bodies = &self.meadow.bodies;
+        let known = known_shapes(bodies);
+        if known != self.shapes {
+            self.renderer
+                .set_shapes(gpu, bodies.shapes(), bodies.coated())?;
+            self.shapes = known;
         }
         Ok(())
     }
@@ -343,7 +346,13 @@ fn show(
         map: &map,
         soil_rgb: terrain.soil_rgb,
     };
-    Ok(renderer.set_scene(gpu, &meadow.field, &look, meadow.bodies.shapes())?)
+    let bodies = &meadow.bodies;
+    Ok(renderer.set_scene(gpu, &meadow.field, &look, bodies.shapes(), bodies.coated())?)
+}
+
+/// How many shapes, and coats on them, there are.
+fn known_shapes(bodies: &Bodies) -> [usize; 2] {
+    [bodies.shapes().len(), bodies.coated().len()]
 }
 
 fn new_timeline(meadow: &Meadow) -> Timeline {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::limits;
+use super::{Coat, limits};
 
 /// A rigid body of the scene.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
@@ -49,6 +49,9 @@ pub struct Body {
     #[serde(default = "default_rgb")]
     #[schemars(inner(range(min = limits::FRACTION.min, max = limits::FRACTION.max)))]
     pub rgb: [f32; 3],
+    /// Plants that grow on its surface and move with it. They are drawn only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coat: Option<Coat>,
 }
 
 fn default_friction() -> f32 {

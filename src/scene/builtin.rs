@@ -37,6 +37,7 @@ pub const SCENES: &[Builtin] = builtin![
     "mesh_drop",
     "million_blades",
     "still",
+    "topiary",
     "vehicle",
 ];
 

@@ -76,6 +76,12 @@ pub const PLANTS_PER_TILE: u64 = 65_536;
 
 pub const PLANT_DENSITY: Range = range(0.0, 10_000.0, "plants/m2");
 pub const SPECIES: usize = 8;
+/// Plants of a coat per square metre of a body's surface.
+pub const COAT_DENSITY: Range = range(0.0, 100_000.0, "plants/m2");
+/// Plants of all coats of a scene: a frame's list of them is then at most 64 MiB.
+pub const COAT_PLANTS: u64 = 1 << 20;
+/// Triangles under all coats of a scene.
+pub const COAT_TRIANGLES: u64 = 1 << 20;
 /// Seeds of a cluster.
 pub const CLUSTER: Range = range(1.0, 16.0, "seeds");
 /// Grounds on which nothing grows.

@@ -9,6 +9,7 @@ mod body;
 pub mod budget;
 pub mod builtin;
 mod camera;
+mod coat;
 mod error;
 mod expect;
 mod extent;
@@ -27,6 +28,7 @@ mod wind;
 
 pub use body::{Body, Collider, Mass, Motion, Part, Shape, Waypoint};
 pub use camera::Camera;
+pub use coat::{Coat, CoatForm, CoatedSurface};
 pub use error::{AssetError, Problem, SceneError};
 pub use expect::Expectation;
 pub use grass::{Form, Grass, Likes, Phototropic, Response, Species};

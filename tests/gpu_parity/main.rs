@@ -1,6 +1,7 @@
 //! Each pass on the device against its twin in Rust, from the same input. Trials need a graphics
 //! adapter: without one they are ignored, and with `SWARD_REQUIRE_GPU=1` the missing adapter fails.
 
+mod coats;
 mod compare;
 mod cubes;
 mod meadows;
@@ -36,6 +37,11 @@ const CHECKS: &[(&str, Check)] = &[
     (
         "poses_about_the_knee_agree",
         plants::poses_about_the_knee_agree,
+    ),
+    ("coats_are_equal", coats::coats_are_equal),
+    (
+        "fewer_plants_of_coats_stay",
+        coats::fewer_plants_of_coats_stay,
     ),
     ("poses_are_equal", rigid::poses_are_equal),
     ("cubes_of_closed_forms_agree", cubes::closed_forms_agree),

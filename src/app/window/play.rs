@@ -283,5 +283,6 @@ fn ball(name: String, position_m: [f64; 3]) -> Body {
         damping: [0.3, 0.8],
         collider: Collider::Auto,
         rgb: [0.75, 0.28, 0.04],
+        coat: None,
     }
 }

@@ -178,5 +178,6 @@ fn circling_ball(number: u32, middle_m: [f64; 2]) -> Body {
         damping: [0.0; 2],
         collider: Collider::Auto,
         rgb: [0.5; 3],
+        coat: None,
     }
 }

@@ -58,7 +58,7 @@ impl StillField {
         picture: [u32; 2],
     ) -> Result<Self, DrawBenchError> {
         let mut renderer = Renderer::new(gpu, PictureTarget::FORMAT, picture)?;
-        renderer.set_scene(gpu, &field, look, &[])?;
+        renderer.set_scene(gpu, &field, look, &[], &[])?;
         Ok(Self {
             wind,
             nodes: Buffer::new(gpu, "no nodes", 1, wgpu::BufferUsages::STORAGE)?,

@@ -23,7 +23,11 @@ pub(super) fn body(key: &Key, body: &Body) -> Check {
         &limits::FRACTION,
     )?;
     within_each(&key.field("damping"), &body.damping, &limits::DAMPING)?;
-    within_each(&key.field("rgb"), &body.rgb, &limits::FRACTION)
+    within_each(&key.field("rgb"), &body.rgb, &limits::FRACTION)?;
+    match &body.coat {
+        Some(coat) => super::coat::coat(&key.field("coat"), coat),
+        None => Ok(()),
+    }
 }
 
 fn shape(key: &Key, shape: &Shape) -> Check {

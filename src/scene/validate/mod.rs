@@ -4,6 +4,7 @@
 
 mod body;
 mod check;
+mod coat;
 mod expect;
 mod meadow;
 mod script;
@@ -38,6 +39,7 @@ pub fn validate(scene: &Scene) -> Result<(), Invalid> {
         size(scene, samples)?;
     }
     bodies(scene)?;
+    coat::budget(scene, &Assets::default())?;
     script::script(&root.field("script"), scene)?;
     cameras(&root.field("cameras"), scene)?;
     expect::expectations(&root.field("expect"), scene)
@@ -78,7 +80,7 @@ pub fn validate_assets(scene: &Scene, assets: &Assets) -> Result<(), Invalid> {
             }
         }
     }
-    Ok(())
+    coat::budget(scene, assets)
 }
 
 /// A base map covers the ground with square texels: its sides have the ground's proportions, to
