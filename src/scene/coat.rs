@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Shape, limits};
+use crate::base::{least, most};
 
 /// Plants on the surface of a body. They are drawn only: nothing presses them. Pairs are smallest and
 /// largest value; a plant draws evenly between them.
@@ -145,7 +146,7 @@ impl CoatedSurface {
 fn bounds_of(points_m: &[[f32; 3]]) -> [f64; 3] {
     [0, 1, 2].map(|axis| {
         let along = || points_m.iter().map(|p| f64::from(p[axis]));
-        along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
+        along().fold(f64::MIN, most) - along().fold(f64::MAX, least)
     })
 }
 
