@@ -73,10 +73,10 @@ fn body_fragment(in: BodyFragment) -> @location(0) vec4f {
 
     let sun = frame.sun_direction;
     let facing = max(dot(normal, sun), 0.0);
-    let coat_open = exp(-3.6 * body.cover);
-    // A coat shades what it grows on as a canopy does the ground (shared/plant_light.wgsl).
+    // A coat shades what it grows on as a canopy does the ground.
+    let coat_open = sun_past_plants(body.cover);
     let reaches = sun_reaches(in.position_from_eye, normal) * coat_open;
-    let sky_open = 1.0 - 0.85 * body.cover;
+    let sky_open = sky_past_plants(body.cover);
     let diffuse = albedo * (frame.sun_rgb * facing * reaches + ambient_light(normal) * sky_open);
 
     // GGX with Schlick's Fresnel term and Kelemen's visibility; light is in units of pi.

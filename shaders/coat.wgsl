@@ -7,6 +7,7 @@
 #import "shared/coat.wgsl"
 #import "shared/frame.wgsl"
 #import "shared/light.wgsl"
+#import "shared/philox.wgsl"
 #import "shared/plant_light.wgsl"
 #import "shared/shadow.wgsl"
 
@@ -32,10 +33,6 @@ struct CoatPoint {
 }
 
 const FORM_IS_BLADE = 1u;
-
-fn byte_of(word: u32, index: u32) -> f32 {
-    return f32((word >> (8u * index)) & 0xffu) * (1.0 / 255.0);
-}
 
 // Half the width at a height, of the widest: a leaf is an egg on a short stalk, a blade tapers.
 fn outline(form: u32, along: f32) -> f32 {

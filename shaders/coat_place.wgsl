@@ -5,6 +5,7 @@
 // Prefix sums over the triangles (shaders/sum_rows.wgsl) run between the two kernels, so that a plant's
 // place in the list is the same in every run. Plants lie by form and detail, a bucket each.
 #import "shared/area_count.wgsl"
+#import "shared/ball_in_view.wgsl"
 #import "shared/clusters.wgsl"
 #import "shared/coat.wgsl"
 #import "shared/noise.wgsl"
@@ -90,9 +91,7 @@ fn is_seen(corners: array<vec3f, 3>, middle: vec3f, reach_m: f32) -> bool {
         max(distance(middle, corners[1]), distance(middle, corners[2])),
     );
     let radius = far + reach_m;
-    let clip = coat_view.clip_from_eye * vec4f(middle, 1.0);
-    let reach = coat_view.clip_reach * radius;
-    return clip.w > -radius && abs(clip.x) <= clip.w + reach.x && abs(clip.y) <= clip.w + reach.y;
+    return ball_in_view(coat_view.clip_from_eye, coat_view.clip_reach, middle, radius);
 }
 
 struct Counted {
@@ -237,11 +236,7 @@ fn place_coats(
     let ramp = max(0.2 * count, 0.2);
     for (var index = 0u; index < places; index++) {
         var plant = plant_of_coat(body, on, own, index);
-        var grown = shown_share(end, ramp, index);
-        if coat_view.count.is_plain == 1u {
-            grown = 1.0;
-        }
-        grown = max(grown, LEAST_GROWN);
+        let grown = max(shown_share(end, ramp, index), LEAST_GROWN);
         plant.height_m *= grown;
         plant.width_m *= grown * widen;
         plant.body = body_index;

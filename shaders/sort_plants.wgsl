@@ -5,6 +5,7 @@
 // plants of one triangle that lie together and are of one kind; of one plant where seeds lie alone. What
 // grows, and whether it is in sight, is decided once for a cluster. Prefix sums over the jobs give every
 // bucket's exact count and every cluster's plants their place, the same in every run.
+#import "shared/ball_in_view.wgsl"
 #import "shared/count.wgsl"
 #import "shared/field.wgsl"
 #import "shared/plant.wgsl"
@@ -107,9 +108,7 @@ fn place_in_bins(at: u32) -> Place {
 fn is_seen(root: vec3f, height_m: f32, spread_m: f32) -> bool {
     let middle = root + vec3f(0.0, 0.5 * height_m, 0.0);
     let radius = height_m + spread_m + sorting.tuft_m;
-    let clip = sorting.clip_from_eye * vec4f(middle, 1.0);
-    let reach = sorting.clip_reach * radius;
-    return clip.w > -radius && abs(clip.x) <= clip.w + reach.x && abs(clip.y) <= clip.w + reach.y;
+    return ball_in_view(sorting.clip_from_eye, sorting.clip_reach, middle, radius);
 }
 
 // How far a cluster's plants are from its middle at most: across its stratum, which may be steep.

@@ -98,7 +98,7 @@ fn is_right_corner(corner: u32) -> bool {
 }
 
 fn shade_byte(plant: Plant, index: u32) -> f32 {
-    return f32((plant.shade >> (8u * index)) & 0xffu) * (1.0 / 255.0);
+    return byte_of(plant.shade, index);
 }
 
 struct DrawnNode {

@@ -47,3 +47,12 @@ fn through_air(radiance: vec3f, position_from_eye: vec3f) -> vec3f {
     let level = normalize(vec3f(direction.x, 0.0, direction.z) + vec3f(0.0, 1e-4, 0.0));
     return mix(radiance, clear_sky(level), lost);
 }
+
+// Share of the sun's light that plants leave at a depth in them, from 0 at their tops; and of the sky's.
+fn sun_past_plants(depth: f32) -> f32 {
+    return exp(-3.6 * depth);
+}
+
+fn sky_past_plants(depth: f32) -> f32 {
+    return 1.0 - 0.85 * depth;
+}

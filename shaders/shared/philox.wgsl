@@ -41,3 +41,8 @@ fn pcg_next(state: ptr<function, u32>) -> u32 {
 fn unit(word: u32) -> f32 {
     return f32(word >> 8u) * (1.0 / 16777216.0);
 }
+
+// A byte of a random word, 0 to 1.
+fn byte_of(word: u32, index: u32) -> f32 {
+    return f32((word >> (8u * index)) & 0xffu) * (1.0 / 255.0);
+}

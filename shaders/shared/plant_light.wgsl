@@ -24,8 +24,8 @@ struct PlantLight {
 // they hide at the ground.
 fn light_between(cover: f32, below_top: f32, position: vec3f) -> PlantLight {
     let depth = cover * pow(below_top, 1.4);
-    let sun_open = exp(-3.6 * depth) * sun_reaches_cheaply(position + UP * 0.01);
-    return PlantLight(1.0 - 0.85 * depth, sun_open);
+    let sun_open = sun_past_plants(depth) * sun_reaches_cheaply(position + UP * 0.01);
+    return PlantLight(sky_past_plants(depth), sun_open);
 }
 
 // Eq. 14 for a thin green leaf, per vertex: it is a few pixels wide.

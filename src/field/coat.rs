@@ -15,7 +15,7 @@ use crate::base::{Pose, Vec3};
 use crate::scene::Coat;
 
 use super::clusters::folded;
-use super::count::{COUNT_WORD, CountView, by_projected_area};
+use super::count::{COUNT_WORD, CountView, by_projected_area, shown_share};
 
 /// Plants of a triangle, on average.
 pub const MOST_ON_TRIANGLE: f32 = 256.0;
@@ -124,8 +124,7 @@ pub fn drawn_count(
 /// [`places`](super::count::places). As [`shown`](super::count::shown) but for triangles far smaller than
 /// the ground's: of few plants most would be small.
 pub fn grown(count: f32, rounding: f32, index: u32) -> f32 {
-    let inside = count + rounding - (index as f32 + 1.0);
-    (inside / (0.2 * count).max(0.2)).clamp(0.0, 1.0)
+    shown_share(count + rounding, (0.2 * count).max(0.2), index)
 }
 
 /// The triangles on which plants grow, in the order of the mesh's: those with more than

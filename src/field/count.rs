@@ -72,8 +72,12 @@ pub fn rounding(seeds: &Seeds, triangle: u32) -> f32 {
 /// How much of plant `index` of a triangle is drawn, 0 to 1: the last ones of the prefix are small,
 /// so that none pops up. Above 0 for ⌊count + rounding⌋ plants.
 pub fn shown(count: f32, rounding: f32, index: u32) -> f32 {
-    let inside = count + rounding - (index as f32 + 1.0);
-    (inside / (0.2 * count).max(1.0)).clamp(0.0, 1.0)
+    shown_share(count + rounding, (0.2 * count).max(1.0), index)
+}
+
+/// The same of a count that is rounded already, over whose last `ramp` plants the shares fall.
+pub fn shown_share(end: f32, ramp: f32, index: u32) -> f32 {
+    ((end - (index as f32 + 1.0)) / ramp).clamp(0.0, 1.0)
 }
 
 /// Places of a triangle of this count: its plants are those of smaller indices, of which

@@ -140,8 +140,8 @@ impl BodiesLayer {
         Ok(())
     }
 
-    /// Writes this frame's records, sorted by shape; coats darken what is under them. Returns balls around the bodies, for the
-    /// shadow map.
+    /// Writes this frame's records, sorted by shape; coats darken what is under them. Returns balls
+    /// around the bodies, for the shadow map.
     ///
     /// # Errors
     /// `UnknownShape`; a pose that is not finite; the device's own errors.

@@ -57,6 +57,13 @@ impl View {
         self.right().cross(self.forward).unit_or(Vec3::UP)
     }
 
+    /// How much farther than its middle a ball of radius 1 reaches in clip space, across and up.
+    pub(super) fn clip_reach(&self, aspect: f32) -> [f32; 2] {
+        let rows = self.clip_from_eye(aspect).transpose();
+        let length = |row: glam::Vec4| row.truncate().length();
+        [rows.x_axis, rows.y_axis].map(|row| length(row) + length(rows.w_axis))
+    }
+
     /// Projection of a point relative to the eye, for a picture of this width over height.
     pub fn clip_from_eye(&self, aspect: f32) -> Mat4 {
         let [forward, up] = [self.forward, self.up()].map(|v| glam::Vec3::from(v.to_f32()));

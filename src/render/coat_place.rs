@@ -223,9 +223,6 @@ impl CoatPlaces {
 
     fn uniform(&self, frame: &CoatFrame<'_>, bodies: u32) -> CoatView {
         let clip_from_eye = frame.view.clip_from_eye(frame.picture.aspect());
-        let rows = clip_from_eye.transpose();
-        let length = |row: glam::Vec4| row.truncate().length();
-        let ahead = length(rows.w_axis);
         let per_px = frame.detail.per_px * frame.density;
         let mut vertices = [[0; 4]; 2];
         for (bucket, steps) in STEPS.iter().flatten().enumerate() {
@@ -234,7 +231,7 @@ impl CoatPlaces {
         let (groups, groups_wide) = self.groups();
         CoatView {
             clip_from_eye: clip_from_eye.to_cols_array_2d(),
-            clip_reach: [length(rows.x_axis) + ahead, length(rows.y_axis) + ahead],
+            clip_reach: frame.view.clip_reach(frame.picture.aspect()),
             bodies,
             triangles: self.triangle_count,
             groups,

@@ -83,6 +83,7 @@ const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// The shaders of this layer and what only they import.
 pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/area_count.wgsl", NEAR_M),
+    wgsl_file!("shared/ball_in_view.wgsl"),
     wgsl_file!("shared/coat.wgsl"),
     wgsl_file!("shared/count.wgsl", ANCHOR_CELLS, COUNT_WORD),
     wgsl_file!(

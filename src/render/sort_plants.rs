@@ -317,9 +317,6 @@ impl PlantSort {
 
     fn uniform(&self, input: &SortInput<'_>, triangles: u32) -> SortUniform {
         let clip_from_eye = input.view.clip_from_eye(input.picture.aspect());
-        let rows = clip_from_eye.transpose();
-        let length = |row: glam::Vec4| row.truncate().length();
-        let ahead = length(rows.w_axis);
         let mut forms = [[0; 4]; MAX_SPECIES / 4];
         for (kind, &form) in input.forms.iter().enumerate() {
             forms[kind / 4][kind % 4] = form;
@@ -327,7 +324,7 @@ impl PlantSort {
         let bins = Bins::up_to(input.most);
         SortUniform {
             clip_from_eye: clip_from_eye.to_cols_array_2d(),
-            clip_reach: [length(rows.x_axis) + ahead, length(rows.y_axis) + ahead],
+            clip_reach: input.view.clip_reach(input.picture.aspect()),
             reach_m: input.detail.reach_m,
             tuft_m: TUFT_RADIUS_M,
             triangles,
@@ -353,18 +350,13 @@ fn count_uniform(input: &SortInput<'_>) -> CountUniform {
         Count::ProjectedArea { per_px } => (COUNT_BY_PROJECTED_AREA, per_px),
         Count::WorldArea { per_px } => (COUNT_BY_WORLD_AREA, per_px),
     };
+    let per_px = per_px * input.detail.density;
     CountUniform {
-        right: input.view.right().to_f32(),
-        pixel_rad: input.view.pixel_rad(input.picture.rows),
-        up: input.view.up().to_f32(),
-        per_px: per_px * input.detail.density,
-        forward: input.view.forward.to_f32(),
         rule,
         most: input.most,
         is_plain: u32::from(input.detail.transition == Transition::Plain),
-        spare_a: [0.0; 2],
         judge_from_eye: (input.detail.judged_from)
             .map_or([0.0; 3], |place| input.view.from_eye(place)),
-        spare_b: 0.0,
+        ..CountUniform::by_projected_area(input.view, input.picture.rows, per_px)
     }
 }

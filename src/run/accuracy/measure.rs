@@ -158,7 +158,10 @@ impl Point {
                 self.rounding.frame(&plants, cpu);
                 Ok(())
             }
-            Err(RunError::Gpu { source, .. }) if matches!(source, GpuError::CutShort { .. }) => {
+            Err(RunError::Gpu {
+                source: source @ GpuError::CutShort { .. },
+                ..
+            }) => {
                 self.refused = source.to_string();
                 self.gpu = None;
                 Ok(())
