@@ -19,6 +19,8 @@ use sward::terrain::ColourMap;
 mod coats;
 #[path = "pictures/counted.rs"]
 mod counted;
+#[path = "pictures/stones.rs"]
+mod stones;
 
 type Check = fn(&Gpu) -> Result<(), Failed>;
 
@@ -51,6 +53,10 @@ const CHECKS: &[(&str, Check)] = &[
     ("coats_grow_outwards", coats::coats_grow_outwards),
     ("coats_grow_on_faces", coats::coats_grow_on_faces),
     ("no_coats_cost_nothing", coats::no_coats_cost_nothing),
+    (
+        "stones_are_shoved_and_go_back",
+        stones::stones_are_shoved_and_go_back,
+    ),
     (
         "what_cannot_be_drawn_is_refused",
         what_cannot_be_drawn_is_refused,
@@ -294,6 +300,7 @@ fn waking_changes_no_pixel(gpu: &Gpu) -> Result<(), Failed> {
     // A ball 1 cm below the longest blade's length wakes the tiles under it; no blade stands so
     // straight that it touches.
     let scene = "(grass: (species: [(height_m: (0.3, 0.6)), (form: Leaf, height_m: (0.1, 0.2)), \
+        (form: Gravel, response: Shoved, height_m: (0.05, 0.1), width_m: (0.02, 0.05)), \
         (form: Flower(head_m: 0.05, petal_rgb: (0.8, 0.7, 0.1), centre_rgb: (0.3, 0.2, 0.1)))]), \
         bodies: [(name: \"ball\", shape: Ball(radius_m: 0.1), position_m: (0.0, 0.69, 0.0), motion: Fixed)])";
     let mut stage = Stage::new(gpu, scene, 2)?;
