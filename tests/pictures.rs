@@ -58,6 +58,10 @@ const CHECKS: &[(&str, Check)] = &[
         stones::stones_are_shoved_and_go_back,
     ),
     (
+        "stones_lie_where_they_were_shoved",
+        stones::stones_lie_where_they_were_shoved,
+    ),
+    (
         "what_cannot_be_drawn_is_refused",
         what_cannot_be_drawn_is_refused,
     ),

@@ -4,13 +4,15 @@ use libtest_mimic::Failed;
 use sward::base::Vec3;
 use sward::gpu::Gpu;
 use sward::render::{Picture, View};
+use sward::scene::Scene;
+use sward::sim::{Grass, Meadow, measure, tick};
 
 use super::{ALL, Shown, Stage, WHOLE, difference, hold};
 
 /// A ball is led along x over stones and taken away.
 const STONES: &str = "(terrain: (ground: Rolling(size_m: (4, 4), amplitude_m: 0.1, wavelength_m: 3)), \
-    grass: (density_per_m2: 500, species: [(form: Gravel, response: RESPONSE, height_m: (0.03, 0.06), \
-        width_m: (0.02, 0.04), lean_deg: (0, 5), stiffness: (4000, 4000), tint_rgb: (2, 2, 2))]), \
+    grass: (density_per_m2: DENSITY, species: [(form: Gravel, response: RESPONSE, height_m: (0.03, 0.06), \
+        width_m: (0.02, 0.04), lean_deg: (0, 5), stiffness: (4000, 4000), flexibility: 0, tint_rgb: (2, 2, 2))]), \
     solver: (recovery_s: 0.5), \
     bodies: [(name: \"ball\", shape: Ball(radius_m: 0.15), above_ground: true, motion: Path(waypoints: [ \
         (at_s: 0, position_m: (-0.7, 0.15, 0)), (at_s: 0.5, position_m: (0.7, 0.15, 0))]))], \
@@ -18,7 +20,7 @@ const STONES: &str = "(terrain: (ground: Rolling(size_m: (4, 4), amplitude_m: 0.
 /// Ticks, 120 a second: when the ball has just gone, when the stones are back and their tiles still awake,
 /// and when those sleep.
 const SHOVED: u32 = 61;
-const BACK: u32 = 121;
+const BACK: u32 = 120;
 const ASLEEP: u32 = 130;
 
 /// From above, 1.3 m of the way across the picture.
@@ -34,8 +36,14 @@ fn above() -> Shown {
     }
 }
 
+fn scene(density: &str, response: &str) -> String {
+    STONES
+        .replace("DENSITY", density)
+        .replace("RESPONSE", response)
+}
+
 fn shot(gpu: &Gpu, response: &str, ticks: u32, active: bool) -> Result<(Picture, usize), Failed> {
-    let scene = STONES.replace("RESPONSE", response);
+    let scene = scene("500", response);
     let mut stage = Stage::new(gpu, &scene, ticks)?;
     let awake = stage.nodes.tiles.len();
     let shown = Shown { active, ..above() };
@@ -69,4 +77,88 @@ pub fn stones_are_shoved_and_go_back(gpu: &Gpu) -> Result<(), Failed> {
     hold(awake == 0 && slept == untouched, format!("{awake} tiles"))?;
     let (stays, _) = shot(gpu, "Stays", SHOVED, true)?;
     hold(stays == untouched, "stones that stay have moved")
+}
+
+/// Where the stones that were shoved by 35 mm and more grew, and where they lie by the tips of their centre
+/// lines, in the world and on the ground.
+fn shoved_places(text: &str) -> Result<Vec<[Vec3<f64>; 2]>, Failed> {
+    let scene: Scene = ron::from_str(text)?;
+    let mut meadow = Meadow::new(scene, &Default::default())?;
+    let mut grass = Grass::<f32>::new();
+    for _ in 0..SHOVED {
+        tick(&mut meadow, &mut grass)?;
+    }
+    let on_ground = |x, z| Vec3::new(x, meadow.field.ground.height_in_world(x, z), z);
+    let tiles = meadow.work.tiles.iter();
+    let stones = tiles
+        .filter_map(|tile| Some(measure::standing(&meadow, tile, grass.slab(tile.slab)?)))
+        .flatten();
+    let places = stones.filter_map(|stone| {
+        let [x, z] = stone.root_in_world();
+        let [dx, _, dz] = (*stone.nodes.last()? - *stone.wind.last()?).to_f64();
+        (dx.hypot(dz) > 0.035).then(|| [on_ground(x, z), on_ground(x + dx, z + dz)])
+    });
+    Ok(places.collect())
+}
+
+/// The pixel at a place, if it is in the picture.
+fn pixel(picture: &Picture, view: &View, in_world: Vec3<f64>) -> Option<[u8; 3]> {
+    let (width, height) = (f64::from(picture.width), f64::from(picture.height));
+    let from_eye = glam::Vec3::from(view.from_eye(in_world)).extend(1.0);
+    let clip = view.clip_from_eye((width / height) as f32) * from_eye;
+    let x = width * f64::from(0.5 + 0.5 * clip.x / clip.w);
+    let y = height * f64::from(0.5 - 0.5 * clip.y / clip.w);
+    let inside = x >= 0.0 && y >= 0.0 && x < width && y < height;
+    let at = 4 * (y as usize * picture.width as usize + x as usize);
+    inside.then(|| [0, 1, 2].map(|i| picture.rgba8[at + i]))
+}
+
+/// Stones so thin on the ground that few hide another lie where the tips of their centre lines were pushed
+/// to, and no longer where they grew.
+pub fn stones_lie_where_they_were_shoved(gpu: &Gpu) -> Result<(), Failed> {
+    let text = scene("60", "Shoved");
+    let shown = Shown {
+        shadows: false,
+        ..above()
+    };
+    let bare = Shown {
+        blades: false,
+        ..shown
+    };
+    let mut stage = Stage::new(gpu, &text, 0)?;
+    let (untouched, ground) = (stage.shoot(gpu, shown)?, stage.shoot(gpu, bare)?);
+    let shoved = Stage::new(gpu, &text, SHOVED)?.shoot(gpu, shown)?;
+    // How many of a list of places show a stone.
+    let covered = |picture: &Picture, places: &[Vec3<f64>]| {
+        let shows = |&&place: &&Vec3<f64>| {
+            let there = pixel(picture, &shown.view, place);
+            let without = pixel(&ground, &shown.view, place);
+            there
+                .zip(without)
+                .is_some_and(|(there, without)| (0..3).any(|i| there[i].abs_diff(without[i]) > 6))
+        };
+        places.iter().filter(shows).count()
+    };
+    let mut places = shoved_places(&text)?;
+    places.retain(|[old, new]| {
+        [old, new].map(|&place| pixel(&ground, &shown.view, place).is_some()) == [true; 2]
+    });
+    let (old, new): (Vec<_>, Vec<_>) = places.iter().map(|&[old, new]| (old, new)).unzip();
+    let counts = [
+        covered(&untouched, &old),
+        covered(&untouched, &new),
+        covered(&shoved, &old),
+        covered(&shoved, &new),
+    ];
+    let what = format!(
+        "of {} stones: covered before where they grew and where they are shoved to, and then: {counts:?}",
+        places.len()
+    );
+    println!("{what}");
+    let [most, few] = [places.len() * 9 / 10, places.len() * 3 / 10];
+    let [grew, empty, left, lies] = counts;
+    hold(
+        places.len() >= 10 && grew >= most && empty <= few && left <= few && lies >= most,
+        what,
+    )
 }
