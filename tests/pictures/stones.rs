@@ -52,7 +52,7 @@ fn shot(gpu: &Gpu, response: &str, ticks: u32, active: bool) -> Result<(Picture,
 }
 
 /// Where the ball passed stones lie elsewhere; no other pixel changes, and none when they are back.
-pub fn stones_are_shoved_and_go_back(gpu: &Gpu) -> Result<(), Failed> {
+pub fn stones_go_back(gpu: &Gpu) -> Result<(), Failed> {
     let (untouched, _) = shot(gpu, "Shoved", 0, true)?;
     let (shoved, awake) = shot(gpu, "Shoved", SHOVED, true)?;
     let passed = difference(&shoved, &untouched, [0.1, 0.42, 0.9, 0.58]);
@@ -116,7 +116,7 @@ fn shows_stone(picture: &Picture, view: &View, in_world: Vec3<f64>) -> Option<bo
 
 /// Stones so few that hardly one hides another lie where the tips of their centre lines were pushed to, and
 /// no longer where they grew. A stone's half lengths are up to 30, 20 and 24 mm, times up to 1.25.
-pub fn stones_lie_where_they_were_shoved(gpu: &Gpu) -> Result<(), Failed> {
+pub fn stones_lie_where_shoved(gpu: &Gpu) -> Result<(), Failed> {
     let text = scene("120", "Shoved", "8");
     let shown = Shown {
         shadows: false,
