@@ -45,10 +45,6 @@ fn companion(tile: TileRecord, plant: Plant, index: u32) -> Companion {
     return Companion(vec3f(xz.x, rise, xz.y), vec2f(cos_turns(turn), sin_turns(turn)), size);
 }
 
-fn turned_level(v: vec3f, turn: vec2f) -> vec3f {
-    return vec3f(v.x * turn.x - v.z * turn.y, v.y, v.x * turn.y + v.z * turn.x);
-}
-
 // Vertices are pairs up the blade, and its tip.
 @vertex
 fn blade_vertex(

@@ -1,5 +1,8 @@
 // Stones: octahedra with corners moved about, flat shaded (P15 section 4: diamond-shaped gravel).
 // Host: src/render/gravel.rs.
+//
+// A stone that bodies shove has a centre line like a plant that bends, and is moved, whole, by as much
+// as the tip of that is off, level. It comes to lie on the ground there, tilted the way it was pushed.
 #import "shared/drawn_plant.wgsl"
 #import "shared/planar_shadow.wgsl"
 #import "shared/plant_light.wgsl"
@@ -22,12 +25,58 @@ fn stone_corner(shade: u32, half_axis: u32) -> vec3f {
     return corner;
 }
 
+// Sine of the angle by which a stone is rocked that was shoved by its own length: what lies in the
+// ground holds back its lower part.
+const ROCKED = 0.3;
+
+// How far bodies have moved a stone.
+struct Shove {
+    away: vec3f, // from where it grew, in metres; up by as much as the ground rises
+    tilt: vec2f, // sine of the angle it is rocked by, to the side it was pushed to, x and z
+}
+
+fn shove_of(drawn: DrawnPlant) -> Shove {
+    let unmoved = Shove(vec3f(0.0), vec2f(0.0));
+    let tile = drawn.tile.tile;
+    let plant = drawn.plant;
+    if tile.slab == NO_SLAB || !responds(plant) {
+        return unmoved;
+    }
+    let tip = active_nodes[plant_row(tile.slab, drawn.place) + field.segments].xyz;
+    let free = wind_pose_at(plant, wind_bend(tile, plant), field.segments).place;
+    let share = (tip - free) / max(plant.height_m, 1e-6);
+    if length(share) < UNMOVED {
+        return unmoved;
+    }
+    let level = (tip - free).xz;
+    let place = plant.root.xz + level;
+    let rise = ground_in_anchor(tile, place.x, place.y) - plant.root.y;
+    return Shove(vec3f(level.x, rise, level.y), ROCKED * share.xz);
+}
+
+// The plant as if it had grown where it was shoved to.
+fn shoved(drawn: DrawnPlant, shove: Shove) -> DrawnPlant {
+    var there = drawn;
+    there.plant.root += shove.away;
+    there.root_from_eye += shove.away;
+    return there;
+}
+
+// Turns a vector as what is upright is turned by a tilt.
+fn rocked(v: vec3f, tilt: vec2f) -> vec3f {
+    let cosine = sqrt(max(1.0 - dot(tilt, tilt), 0.0));
+    // Times the sine.
+    let axis = cross(UP, vec3f(tilt.x, 0.0, tilt.y));
+    return v * cosine + cross(axis, v) + axis * (dot(axis, v) / (1.0 + cosine));
+}
+
 @vertex
 fn stone_vertex(
     @builtin(vertex_index) vertex: u32,
     @builtin(instance_index) instance: u32,
 ) -> StonePoint {
-    return stone_point(drawn_plant(vertex, instance), vertex % BUCKET_VERTICES);
+    let drawn = drawn_plant(vertex, instance);
+    return stone_point(drawn, shove_of(drawn), vertex % BUCKET_VERTICES);
 }
 
 @vertex
@@ -36,10 +85,13 @@ fn shadow_vertex(
     @builtin(instance_index) instance: u32,
 ) -> ShadowPoint {
     let drawn = drawn_plant(vertex, instance);
-    return planar_shadow(drawn, stone_point(drawn, vertex % BUCKET_VERTICES).clip);
+    let shove = shove_of(drawn);
+    let point = stone_point(drawn, shove, vertex % BUCKET_VERTICES);
+    return planar_shadow(shoved(drawn, shove), point.clip);
 }
 
-fn stone_point(drawn: DrawnPlant, corner: u32) -> StonePoint {
+// Its colour is that of the ground where it grew, wherever it lies.
+fn stone_point(drawn: DrawnPlant, shove: Shove, corner: u32) -> StonePoint {
     let face = corner / 3u;
     let plant = drawn.plant;
     // A face has one corner on each axis.
@@ -57,18 +109,14 @@ fn stone_point(drawn: DrawnPlant, corner: u32) -> StonePoint {
         local = z;
     }
 
-    let distance = length(drawn.root_from_eye);
+    let root_from_eye = shoved(drawn, shove).root_from_eye;
+    let distance = length(root_from_eye);
     let widened = max(LEAST_HALF_PX * distance * frame.pixel_rad / max(half_m.x, 1e-6), 1.0);
     let turn = plant.azimuth;
     // A third of the stone is in the ground.
     let shaped = local * half_m * widened + vec3f(0.0, 0.35 * half_m.y, 0.0);
-    let position = drawn.root_from_eye
-        + vec3f(shaped.x * turn.x - shaped.z * turn.y, shaped.y, shaped.x * turn.y + shaped.z * turn.x);
-    let normal = vec3f(
-        own_normal.x * turn.x - own_normal.z * turn.y,
-        own_normal.y,
-        own_normal.x * turn.y + own_normal.z * turn.x,
-    );
+    let position = root_from_eye + rocked(turned_level(shaped, turn), shove.tilt);
+    let normal = rocked(turned_level(own_normal, turn), shove.tilt);
     let ground = ground_rgb(drawn) * field.species[plant.species].tint_rgb;
     let warmth = 0.9 + 0.2 * shade_byte(plant, 1u);
     let surface = ground * (0.75 + 0.65 * shade_byte(plant, 0u)) * vec3f(warmth, 1.0, 2.0 - warmth);

@@ -103,6 +103,9 @@ fn numbers_out_of_range() {
         "(grass: (species: [(height_m: (0.4, 0.2))]))" => "1:31" "grass.species[0].height_m": "(0.4, 0.2)";
         "(grass: (species: [(share: 0)]))" => "1:19" "grass.species": "positive share";
         "(grass: (species: [(name: \"\")]))" => "1:27" "grass.species[0].name": "1 to 64";
+        "(grass: (species: [(form: Gravel)]))" => "1:20" "grass.species[0].response": "is Bends", "where none is given", "write Shoved", "Stays";
+        "(grass: (species: [(form: Gravel, response: Bends)]))" => "1:45" "grass.species[0].response": "is Bends", "write Shoved", "Stays";
+        "(grass: (species: [(form: Twig, response: Shoved)]))" => "1:43" "grass.species[0].response": "is Shoved", "only the form Gravel", "write Bends", "Stays";
         "(grass: (species: [(likes: (hsv: (361, 0, 0)))]))" => "1:35" "grass.species[0].likes.hsv[0]": "is 361", "0 to 360 degrees";
         "(grass: (species: [(likes: (hsv: (60, 1.5, 0)))]))" => "1:39" "grass.species[0].likes.hsv[1]": "is 1.5", "0 to 1";
         "(grass: (species: [(likes: (weights: (0, 0, 0)))]))" => "1:38" "grass.species[0].likes.weights": "all 0";
@@ -138,6 +141,7 @@ fn the_limits_themselves_are_allowed() {
         "(solver: (blade_table: (2, 512)))",
         "(grass: (density_per_m2: 10000, species: []))",
         "(grass: (density_per_m2: 0, species: [(height_m: (0.001, 10), lean_deg: (0, 90))]))",
+        "(grass: (species: [(form: Gravel, response: Shoved), (form: Gravel, response: Stays)]))",
         "(terrain: (ground: Flat(size_m: (0.1, 0.1), spacing_m: 0.5)))",
         body!("shape: Ball(radius_m: 0.001), restitution: 1, mass: Density(50000)"),
         body!("shape: Box(size_m: (100, 0.001, 100)), position_m: (500000, -500000, 0)"),

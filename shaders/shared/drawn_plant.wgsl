@@ -97,6 +97,11 @@ fn is_right_corner(corner: u32) -> bool {
     return of_quad == 1u || of_quad == 4u || of_quad == 5u;
 }
 
+// A vector turned about the vertical, by an angle given as its cosine and sine.
+fn turned_level(v: vec3f, turn: vec2f) -> vec3f {
+    return vec3f(v.x * turn.x - v.z * turn.y, v.y, v.x * turn.y + v.z * turn.x);
+}
+
 fn shade_byte(plant: Plant, index: u32) -> f32 {
     return byte_of(plant.shade, index);
 }

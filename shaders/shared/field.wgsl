@@ -14,7 +14,7 @@ struct SpeciesUniform {
     // Part of its height and stiffness that a plant lacks where the ground is another kind's.
     dwindle: f32,
     // 1 if bodies push it aside.
-    bends: u32,
+    responds: u32,
     spare_a: u32,
     // Azimuth of the light and how far from it plants lean, in turns; the latter below 0 where they
     // lean to all sides alike.

@@ -165,5 +165,5 @@ fn plant_at(tile: TileRecord, place: u32) -> Plant {
 
 // Whether a plant is there and of a kind that bodies push aside.
 fn responds(plant: Plant) -> bool {
-    return plant.grows && field.species[plant.species].bends == 1u;
+    return plant.grows && field.species[plant.species].responds == 1u;
 }

@@ -116,7 +116,7 @@ impl Field {
     pub fn responding_plant(&self, anchor: &Anchor, tile: TileId, place: u32) -> Option<Plant> {
         let plant = self.plant(anchor, tile, place)?;
         self.seeds.species[plant.species as usize]
-            .bends
+            .responds
             .then_some(plant)
     }
 

@@ -59,8 +59,8 @@ pub struct SpeciesNumbers {
     pub tint_rgb: [f32; 3],
     /// Part of its height and stiffness that a plant lacks where the ground is another kind's.
     pub dwindle: f32,
-    /// Whether bodies push it aside.
-    pub bends: bool,
+    /// Whether bodies push its plants aside, bent or shoved.
+    pub responds: bool,
     pub form: Form,
 }
 
@@ -272,7 +272,7 @@ fn numbers(kind: &Species, range: &SpeciesRange, share_below: u32) -> SpeciesNum
         flexibility: kind.flexibility,
         tint_rgb: kind.tint_rgb,
         dwindle: kind.likes.as_ref().map_or(0.0, |likes| likes.dwindle),
-        bends: kind.response == Response::Bends,
+        responds: kind.response != Response::Stays,
         form: kind.form,
     }
 }

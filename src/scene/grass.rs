@@ -154,7 +154,8 @@ pub enum Form {
     Leaf,
     /// A thin round stick with a side branch.
     Twig,
-    /// A stone: `height_m` is its length, `width_m` its thickness.
+    /// A stone: `height_m` is its length, `width_m` its thickness. It does not bend: its `response` is
+    /// `Shoved` or `Stays`.
     Gravel,
 }
 
@@ -170,6 +171,12 @@ pub enum Response {
     Bends,
     /// It stays where it is; bodies pass through it.
     Stays,
+    /// It keeps its shape, is shoved aside and rocked, and goes back: for `Gravel` only. Bodies push the
+    /// centre line that it would have if it bent, and it is moved by as much as the tip of that is, level:
+    /// by at most its length, where that line stands upright and straight (`lean_deg` near 0, `stiffness`
+    /// of some thousands). Then bodies pass over it. It is back after the scene's recovery time: nothing
+    /// is kept of plants at rest, so that none can stay where it was carried.
+    Shoved,
 }
 
 /// A liking for a colour of the ground: P15 eq. 16. The score of a ground is the distance of its

@@ -72,6 +72,7 @@ const CHECKS: &[(&str, Check)] = &[
         "a_rolled_track_agrees_with_closed_forms",
         runs::a_rolled_track_agrees_with_closed_forms,
     ),
+    ("shoved_stones_agree", runs::shoved_stones_agree),
     (
         "a_still_meadow_dispatches_nothing",
         runs::a_still_meadow_dispatches_nothing,

@@ -107,6 +107,18 @@ pub fn parade(collider: &str) -> Result<Meadow, Failed> {
     Ok(Meadow::new(loaded.scene, &loaded.assets)?)
 }
 
+/// A ball led over stones and thin grass.
+pub fn shoved_stones() -> Result<Meadow, Failed> {
+    let text = "(duration_s: 1, \
+        terrain: (ground: Rolling(size_m: (4, 4), amplitude_m: 0.1, wavelength_m: 3)), \
+        grass: (density_per_m2: 1000, species: [(share: 0.2), (form: Gravel, response: Stays, share: 0.2), \
+            (form: Gravel, response: Shoved, height_m: (0.02, 0.06), lean_deg: (0, 5), stiffness: (4000, 4000))]), \
+        bodies: [(name: \"ball\", shape: Ball(radius_m: 0.15), above_ground: true, motion: Path(waypoints: [ \
+            (at_s: 0, position_m: (-1, 0.15, 0)), (at_s: 1, position_m: (1, 0.15, 0))]))])";
+    let loaded = parse_scene("stones", text, &[])?;
+    Ok(Meadow::new(loaded.scene, &loaded.assets)?)
+}
+
 /// The scene in which nothing moves.
 pub fn still() -> Result<Meadow, Failed> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/still.ron");

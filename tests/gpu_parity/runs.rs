@@ -10,7 +10,7 @@ use sward::sim::{Checkpoint, Grass, Meadow};
 
 use super::Device;
 use super::compare::ensure;
-use super::meadows::{rolling_ball, still};
+use super::meadows::{rolling_ball, shoved_stones, still};
 
 /// Promised: root mean square of the nodes' differences, and the share of plants that slid to the
 /// other side of the body.
@@ -138,6 +138,23 @@ pub fn a_rolled_track_agrees_with_cubes(device: &Device) -> Result<(), Failed> {
 
 pub fn a_rolled_track_agrees_with_closed_forms(device: &Device) -> Result<(), Failed> {
     compare_tracks(device, Collider::Analytic)
+}
+
+/// Stones are pushed by the kernels that push grass.
+pub fn shoved_stones_agree(device: &Device) -> Result<(), Failed> {
+    let (mut here, mut there) = (shoved_stones()?, shoved_stones()?);
+    let mut cpu = Grass::<f32>::new();
+    let mut gpu = GpuGrass::new(&device.gpu, &device.kernels, &mut there)?;
+    let mut tracks = Tracks::default();
+    for now in 1..=120 {
+        sward::sim::tick(&mut here, &mut cpu)?;
+        sward::gpu::tick(&mut there, &mut gpu)?;
+        if now % 15 == 0 {
+            let state: GpuState = gpu.read_state(&there)?;
+            tracks.add(&plants(&here, &cpu), &plants(&there, &state))?;
+        }
+    }
+    tracks.check()
 }
 
 pub fn a_still_meadow_dispatches_nothing(device: &Device) -> Result<(), Failed> {

@@ -6,6 +6,7 @@ mod analytic;
 mod bounds;
 mod convergence;
 mod pressed;
+mod shoved;
 
 use std::collections::BTreeMap;
 

@@ -1,7 +1,7 @@
 //! Ground, plants, wind and solver settings.
 
 use super::check::{Check, Key, at_most, name, ordered, within, within_each};
-use crate::scene::{Form, Grass, Ground, Likes, Solver, Species, Terrain, Wind, limits};
+use crate::scene::{Form, Grass, Ground, Likes, Response, Solver, Species, Terrain, Wind, limits};
 
 pub(super) fn terrain(key: &Key, terrain: &Terrain) -> Check {
     ground(&key.field("ground"), &terrain.ground)?;
@@ -135,9 +135,27 @@ fn form(key: &Key, form: &Form) -> Check {
     }
 }
 
+/// Stones keep their shape, and nothing else does.
+fn response(key: &Key, species: &Species) -> Check {
+    let is_stone = species.form == Form::Gravel;
+    let what = match species.response {
+        Response::Bends if is_stone => {
+            "is Bends (so it is where none is given), but the form Gravel, a stone, does not bend; \
+             write Shoved if bodies push it aside, Stays if they pass through it"
+        }
+        Response::Shoved if !is_stone => {
+            "is Shoved, but only the form Gravel, a stone, keeps its shape; \
+             write Bends if bodies push it aside, Stays if they pass through it"
+        }
+        Response::Bends | Response::Shoved | Response::Stays => return Ok(()),
+    };
+    key.clone().fail(what)
+}
+
 fn species(key: &Key, species: &Species) -> Check {
     name(&key.field("name"), &species.name)?;
     form(&key.field("form"), &species.form)?;
+    response(&key.field("response"), species)?;
     if let Some(taste) = &species.likes {
         likes(&key.field("likes"), taste)?;
     }
