@@ -159,8 +159,7 @@ fn blade_tone(across: f32, width: f32) -> f32 {
 @fragment
 fn blade_fragment(in: BladePoint) -> @location(0) vec4f {
     let tone = blade_tone(in.across, fwidth(in.across));
-    // Without multisampling coverage is drawn by lot, pixel by pixel.
-    if plant_look.samples == 1u && in.opacity < lattice(vec2i(in.clip.xy)) {
+    if is_left_out(in.opacity, in.clip.xy) {
         discard;
     }
     return vec4f(in.radiance * tone, saturate(in.opacity));

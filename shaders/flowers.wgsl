@@ -126,7 +126,7 @@ fn flower_fragment(in: FlowerPoint) -> @location(0) vec4f {
         rgb *= mix(shaded, form.centre_rgb, mask.y);
         cover *= mask.x;
     }
-    if cover < 0.04 || (plant_look.samples == 1u && cover < lattice(vec2i(in.clip.xy))) {
+    if cover < 0.04 || is_left_out(cover, in.clip.xy) {
         discard;
     }
     return vec4f(through_air(rgb, in.position_from_eye), saturate(cover));

@@ -130,7 +130,7 @@ fn stone_point(drawn: DrawnPlant, shove: Shove, corner: u32) -> StonePoint {
 
 @fragment
 fn stone_fragment(in: StonePoint) -> @location(0) vec4f {
-    if plant_look.samples == 1u && in.opacity < lattice(vec2i(in.clip.xy)) {
+    if is_left_out(in.opacity, in.clip.xy) {
         discard;
     }
     let width = fwidth(in.on_stone);

@@ -78,7 +78,7 @@ fn leaf_fragment(in: LeafPoint) -> @location(0) vec4f {
     let from_rib = abs(in.on_leaf.x);
     let inside = outline(in.on_leaf.y, in.lobes) - from_rib;
     let cover = in.opacity * saturate(0.5 + inside / max(width.x, 1e-4));
-    if cover < 0.04 || (plant_look.samples == 1u && cover < lattice(vec2i(in.clip.xy))) {
+    if cover < 0.04 || is_left_out(cover, in.clip.xy) {
         discard;
     }
     // Veins run from the midrib outwards and towards the tip; gone before they alias.

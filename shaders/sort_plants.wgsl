@@ -7,19 +7,12 @@
 // bucket's exact count and every cluster's plants their place, the same in every run.
 #import "shared/ball_in_view.wgsl"
 #import "shared/count.wgsl"
+#import "shared/draw_args.wgsl"
 #import "shared/field.wgsl"
 #import "shared/plant.wgsl"
 #import "shared/tile.wgsl"
 #import "shared/drawn_tile.wgsl"
 #import "shared/sorting.wgsl"
-
-// Arguments of an indirect draw.
-struct DrawArgs {
-    vertices: u32,
-    instances: u32,
-    first_vertex: u32,
-    first_instance: u32,
-}
 
 // A cluster of the list, and what is drawn of it.
 struct ClusterRecord {
@@ -251,7 +244,8 @@ fn sort_plants(
     }
     if job == 0u && local < BUCKETS {
         let vertices = sorting.vertices[local / DETAILS][local % DETAILS];
-        draws[local] = DrawArgs(vertices, totals[local], local * BUCKET_VERTICES, 0u);
+        let first_vertex = local * BUCKET_VERTICES;
+        draws[local] = DrawArgs(vertices, totals[local], first_vertex, 0u, first_of_bucket(local));
     }
     let record = clusters[job * WORKGROUP + local];
     if record.bucket >= BUCKETS {

@@ -381,8 +381,9 @@ fn lit_ground(in: GroundPoint) -> vec4f {
     // As fewer blades are drawn, the ground takes over their look.
     let full = frame.blade_full_m;
     let reach = frame.blade_reach_m;
-    var grown = 0.8 * smoothstep(full, 4.0 * full, distance);
-    grown = max(grown, smoothstep(0.5 * reach, 0.95 * reach, distance));
+    let away = length(in.position_from_eye - frame.judge_from_eye);
+    var grown = 0.8 * smoothstep(full, 4.0 * full, away);
+    grown = max(grown, smoothstep(0.5 * reach, 0.95 * reach, away));
     grown = max(grown, smoothstep(0.0, 1.5, in.beyond_m)) * select(0.0, 1.0, ground.canopy_m > 0.0);
     let surface = blended_surface(in, base, pixel_m, long_pixel_m, grown);
 

@@ -106,7 +106,7 @@ fn on_branch(drawn: DrawnPlant, is_tip: bool) -> StickPoint {
 
 @fragment
 fn twig_fragment(in: TwigPoint) -> @location(0) vec4f {
-    if plant_look.samples == 1u && in.opacity < lattice(vec2i(in.clip.xy)) {
+    if is_left_out(in.opacity, in.clip.xy) {
         discard;
     }
     let width = fwidth(in.on_bark);

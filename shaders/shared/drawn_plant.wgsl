@@ -1,5 +1,6 @@
 // A plant as the second stage gets it from the first. Hosts: src/render/plants.rs,
 // src/render/sort_plants.rs.
+#import "shared/draw_args.wgsl"
 #import "shared/drawn_tile.wgsl"
 #import "shared/noise.wgsl"
 #import "shared/plant.wgsl"
@@ -42,9 +43,9 @@ struct PlantLook {
 @group(3) @binding(3) var base_colour: texture_2d<f32>;
 @group(3) @binding(4) var base_sampler: sampler;
 // Plants bucket by bucket: tile; rank; how it thrives in 17 bits, then its kind in 3; and halves:
-// share of its size and one over its width's factor. And how many each bucket has.
+// share of its size and one over its width's factor. And where those of each bucket begin.
 @group(3) @binding(5) var<storage, read> sorted: array<vec4u>;
-@group(3) @binding(6) var<storage, read> totals: array<u32, BUCKETS>;
+@group(3) @binding(6) var<storage, read> draws: array<DrawArgs, BUCKETS>;
 
 struct DrawnPlant {
     tile: DrawnTile,
@@ -61,11 +62,7 @@ struct DrawnPlant {
 // The plant of an instance; `vertex` counts BUCKET_VERTICES for every bucket.
 fn drawn_plant(vertex: u32, instance: u32) -> DrawnPlant {
     let bucket = vertex / BUCKET_VERTICES;
-    var first = 0u;
-    for (var i = 0u; i < bucket; i++) {
-        first += totals[i];
-    }
-    let entry = sorted[first + instance];
+    let entry = sorted[draws[bucket].start + instance];
     let tile = drawn_tiles[entry.x];
     let rank = entry.y;
     // First one blade of every plant, then their companions.
@@ -84,6 +81,11 @@ fn drawn_plant(vertex: u32, instance: u32) -> DrawnPlant {
         tile.anchor_from_eye + plant.root,
         plant_look.buckets[bucket],
     );
+}
+
+// Whether a pixel is left out: without multisampling coverage is drawn by lot, pixel by pixel.
+fn is_left_out(opacity: f32, pixel: vec2f) -> bool {
+    return plant_look.samples == 1u && opacity < lattice(vec2i(pixel));
 }
 
 // Whether a corner of a quad of two triangles is one of its upper two, or of those on its right.

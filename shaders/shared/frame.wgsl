@@ -20,6 +20,8 @@ struct Frame {
     pad_a: f32,
     viewport_px: vec2f,
     pad_b: vec2f,
+    judge_from_eye: vec3f, // distances from here decide how many blades are drawn
+    pad_c: f32,
 }
 
 @group(1) @binding(0) var<uniform> frame: Frame;

@@ -86,6 +86,7 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/ball_in_view.wgsl"),
     wgsl_file!("shared/coat.wgsl"),
     wgsl_file!("shared/count.wgsl", ANCHOR_CELLS, COUNT_WORD),
+    wgsl_file!("shared/draw_args.wgsl"),
     wgsl_file!(
         "shared/drawn_plant.wgsl",
         BUCKET_VERTICES,

@@ -260,7 +260,7 @@ impl PlantsLayer {
                     wgpu::BindingResource::TextureView(&scene.colour.view),
                     wgpu::BindingResource::Sampler(&scene.colour.sampler),
                     self.sort.sorted.binding(),
-                    self.sort.totals.binding(),
+                    self.sort.draws.binding(),
                 ],
             );
             scene.group = Some((input.active_nodes.raw.clone(), group));

@@ -104,6 +104,7 @@ gpu_struct! {
         pub(super) instances: u32,
         first_vertex: u32,
         first_instance: u32,
+        start: u32,
     }
 }
 
@@ -155,7 +156,7 @@ pub(super) struct PlantSort {
     clusters: Buffer<ClusterRecord>,
     job_counts: Buffer<u32>,
     pub(super) tiles: Buffer<DrawnTile>,
-    pub(super) totals: Buffer<u32>,
+    totals: Buffer<u32>,
     pub(super) sorted: Buffer<[u32; 4]>,
     pub(super) draws: Buffer<DrawArgs>,
     /// Whether the frame has tiles.

@@ -33,6 +33,8 @@ gpu_struct! {
         pad_a: f32,
         viewport_px: [f32; 2],
         pad_b: [f32; 2],
+        judge_from_eye: [f32; 3],
+        pad_c: f32,
     }
 }
 
@@ -71,6 +73,9 @@ impl Frame {
             pad_a: 0.0,
             viewport_px: size.map(|n| n as f32),
             pad_b: [0.0; 2],
+            judge_from_eye: (blades.and_then(|detail| detail.judged_from))
+                .map_or([0.0; 3], |place| view.from_eye(place)),
+            pad_c: 0.0,
         }
     }
 }
