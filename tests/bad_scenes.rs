@@ -123,6 +123,18 @@ fn numbers_out_of_range() {
         body!("shape: Ball(radius_m: 1), coat: (rgb: (0, 0, 2))") => "2:58" "bodies[0].coat.rgb[2]": "is 2";
         body!("shape: Ball(radius_m: 1), coat: (lean_deg: (0, 91))") => "2:60" "bodies[0].coat.lean_deg[1]": "0 to 90 degrees";
         body!("shape: Ball(radius_m: 1), coat: (lean: 3)") => "2:46" "bodies[0].coat.lean": "no known key", "lean_deg";
+        "(billboards: (density_per_m2: -1))" => "1:31" "billboards.density_per_m2": "is -1", "0 to 1000 billboards/m2";
+        "(billboards: (nodes: (2, 4)))" => "1:23" "billboards.nodes[0]": "is 2", "3 to 9 nodes";
+        "(billboards: (nodes: (4, 10)))" => "1:26" "billboards.nodes[1]": "is 10";
+        "(billboards: (clumps: []))" => "1:23" "billboards.clumps": "no share above 0";
+        "(billboards: (clumps: [(share: 0)]))" => "1:23" "billboards.clumps": "no share above 0";
+        "(billboards: (clumps: [(), (), (), (), (), (), (), (), ()]))" => "1:23" "billboards.clumps": "9 kinds of clumps", "at most 8";
+        "(billboards: (clumps: [(height_m: (1, 11))]))" => "1:39" "billboards.clumps[0].height_m[1]": "0.01 to 10 m";
+        "(billboards: (clumps: [(width_m: (2, 1))]))" => "1:34" "billboards.clumps[0].width_m": "smaller value first";
+        "(billboards: (clumps: [(look: Palm)]))" => "1:31" "billboards.clumps[0].look": "`Palm`", "Flowering";
+        "(billboards: (clumps: [(season: Monsoon)]))" => "1:33" "billboards.clumps[0].season": "`Monsoon`", "Winter";
+        "(billboards: (messiness: Even(1.5)))" => "1:26" "billboards.messiness": "is 1.5", "0 to 1";
+        "(billboards: (extent: \"none.png\"))" => "1:23" "billboards.extent": "none.png";
         "(terrain: (base_map: \"none.png\"))" => "1:22" "terrain.base_map": "none.png";
         "(terrain: (lush_rgb: (0, 2, 0)))" => "1:26" "terrain.lush_rgb[1]": "is 2", "0 to 1";
         "(terrain: (ground: Flat(size_m: (8, 0))))" => "1:37" "terrain.ground.size_m[1]": "is 0";
@@ -202,6 +214,8 @@ fn counts_over_budget() {
         "(grass: (density_per_m2: 10000), solver: (tile_m: 32, seeding_cell_m: 8),\n terrain: (ground: Flat(size_m: (64, 64), spacing_m: 8)))" => "1:26" "grass.density_per_m2": "10240000 plants in a tile", "65536";
         "(solver: (tile_m: 8))" => "1:19" "solver.tile_m": "is 8 m", "0.5 m", "write 2 m";
         "(terrain: (ground: Flat(size_m: (5000, 5000), spacing_m: 2)))" => "1:20" "terrain.ground": "25000000 tiles", "16777216";
+        "(billboards: (density_per_m2: 1000), solver: (tile_m: 8, seeding_cell_m: 2),\n terrain: (ground: Flat(size_m: (8, 8), spacing_m: 2)))" => "1:31" "billboards.density_per_m2": "64000 billboards in a tile", "4096";
+        "(billboards: (density_per_m2: 50), terrain: (ground: Flat(size_m: (300, 300))))" => "1:31" "billboards.density_per_m2": "4500000 billboards", "4194304";
         // 24 m2 a box; then 4π m2 a ball, in the script too.
         body!("shape: Box(size_m: (2, 2, 2)), coat: (per_m2: 50000)") => "2:59" "bodies[0].coat.per_m2": "is 50000", "1200000 plants on 24.000 m2", "1048576";
         "(bodies: [(name: \"a\", shape: Ball(radius_m: 1), coat: (per_m2: 70000))],\n script: [(at_s: 1, action: Spawn(name: \"b\", shape: Ball(radius_m: 1), coat: (per_m2: 20000)))])" => "2:87" "script[0].action.coat.per_m2": "251327 plants", "makes 1130973", "1048576";
@@ -219,6 +233,109 @@ fn counts_over_budget() {
     assert!(text.to_string().contains("4097 bodies"), "{text}");
     let deep = format!("(bodies: {}", "[".repeat(100_000));
     assert!(parse_scene("deep", &deep, &[]).is_err());
+}
+
+/// A PNG of 8-bit texels.
+fn png(colour: png::ColorType, [columns, rows]: [u32; 2], texels: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, columns, rows);
+    encoder.set_color(colour);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header().expect("a valid header");
+    let written = writer.write_image_data(texels);
+    written.expect("as many bytes as the header says");
+    drop(writer);
+    bytes
+}
+
+#[test]
+fn maps_of_billboards_that_cannot_be_used() {
+    use png::ColorType::{Grayscale, Rgb};
+    let rising = [128, 255, 128];
+    let files = [
+        ("small.png", png(Grayscale, [4, 4], &[200; 16])),
+        ("large.png", png(Grayscale, [8, 8], &[200; 64])),
+        ("wide.png", png(Grayscale, [8, 4], &[200; 32])),
+        ("up.png", png(Rgb, [4, 4], &rising.repeat(16))),
+        (
+            "zero.png",
+            png(
+                Rgb,
+                [4, 4],
+                &[rising.repeat(6), [127; 3].repeat(10)].concat(),
+            ),
+        ),
+        (
+            "down.png",
+            png(
+                Rgb,
+                [4, 4],
+                &[rising.repeat(15), vec![128, 0, 128]].concat(),
+            ),
+        ),
+        ("broken.png", b"no picture".to_vec()),
+    ];
+    let files: Vec<(&str, &[u8])> = files.iter().map(|(name, b)| (*name, &b[..])).collect();
+    let error = |keys: &str| {
+        let source = format!("(billboards: ({keys}))");
+        parse_scene_with("maps", &source, &Embedded(&files))
+            .map(|_| ())
+            .err()
+    };
+    for good in [
+        "extent: \"small.png\", direction: \"up.png\", messiness: Map(\"small.png\")",
+        "extent: \"large.png\", direction: \"up.png\", resample: true",
+    ] {
+        assert!(error(good).is_none(), "{good}: {:?}", error(good));
+    }
+    for (keys, place, key, words) in [
+        (
+            "extent: \"large.png\", direction: \"up.png\"",
+            "1:47",
+            "direction",
+            &[
+                "`up.png` has 4 by 4",
+                "`large.png` of billboards.extent has 8 by 8",
+                "resample: true",
+            ][..],
+        ),
+        (
+            "extent: \"wide.png\"",
+            "1:23",
+            "extent",
+            &["8 by 4 texels", "16 by 16 squares", "8 rows"],
+        ),
+        (
+            "direction: \"zero.png\"",
+            "1:26",
+            "direction",
+            &["`zero.png`", "length 0.007 in texel (2, 1)", "limit of 0.1"],
+        ),
+        (
+            "direction: \"down.png\"",
+            "1:26",
+            "direction",
+            &["rises by -1.000 in texel (3, 3)"],
+        ),
+        (
+            "direction: \"small.png\"",
+            "1:26",
+            "direction",
+            &["8-bit Grayscale", "8-bit RGB PNG"],
+        ),
+        (
+            "messiness: Map(\"up.png\")",
+            "1:26",
+            "messiness",
+            &["8-bit Rgb", "16-bit grey PNG"],
+        ),
+        ("extent: \"broken.png\"", "1:23", "extent", &["damaged"]),
+    ] {
+        let text = error(keys).map(|e| e.to_string()).unwrap_or_default();
+        let head = format!("maps:{place}: billboards.{key}: ");
+        let says_all = words.iter().all(|word| text.contains(word));
+        assert!(text.starts_with(&head) && says_all, "{keys}\n{text}");
+    }
 }
 
 /// A folder of its own that goes when the test ends.

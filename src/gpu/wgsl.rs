@@ -132,13 +132,8 @@ pub const SHARED: &[WgslFile] = &[
     wgsl_file!("shared/field.wgsl", MAX_SPECIES, MAX_TASTES),
     wgsl_file!("shared/fixed.wgsl", EXP2_TABLE, LOG2_TABLE),
     wgsl_file!("shared/ground.wgsl"),
-    wgsl_file!(
-        "shared/kinds.wgsl",
-        ANCHOR_CELLS,
-        HUE_TURN,
-        LEAST_SQUARED,
-        MAX_TASTES
-    ),
+    wgsl_file!("shared/kinds.wgsl", HUE_TURN, LEAST_SQUARED, MAX_TASTES),
+    wgsl_file!("shared/on_map.wgsl", ANCHOR_CELLS),
     wgsl_file!("shared/philox.wgsl"),
     wgsl_file!("shared/plant.wgsl", ANCHOR_CELLS, CELL_STEPS),
     wgsl_file!("shared/pose.wgsl", MAX_NODES),
