@@ -48,6 +48,18 @@ pub const ASSETS: Embedded<'static> = Embedded(&[
         include_bytes!("../../scenes/assets/chair.gltf"),
     ),
     (
+        "assets/clumps_direction.png",
+        include_bytes!("../../scenes/assets/clumps_direction.png"),
+    ),
+    (
+        "assets/clumps_extent.png",
+        include_bytes!("../../scenes/assets/clumps_extent.png"),
+    ),
+    (
+        "assets/clumps_messiness.png",
+        include_bytes!("../../scenes/assets/clumps_messiness.png"),
+    ),
+    (
         "assets/heath.png",
         include_bytes!("../../scenes/assets/heath.png"),
     ),

@@ -12,7 +12,8 @@ pub use packed::{
     AZIMUTH_STEPS, CLUMP_VARIANTS, FINE_STEPS, PackedBillboard, UNIT_STEP, UNIT_STEPS,
 };
 pub use seeds::{
-    BILLBOARD_COUNT_WORD, BILLBOARD_WORD, BillboardSeeds, ClumpNumbers, MOST_TILT_TURNS, TileStart,
+    BILLBOARD_COUNT_WORD, BILLBOARD_WORD, BillboardSeeds, ClumpNumbers, FACES_FROM,
+    MOST_TILT_TURNS, TileStart,
 };
 
 use std::ops::Range;

@@ -34,7 +34,7 @@ pub const BILLBOARD_COUNT_WORD: u32 = (1 << 31) - 1;
 /// Largest tilt from the map's direction, at full messiness.
 pub const MOST_TILT_TURNS: f32 = 0.125;
 /// Sine of the lean from which on a clump shows its face all the way, as a factor.
-const FACES_FROM: f32 = 4.0;
+pub const FACES_FROM: f32 = 4.0;
 
 /// The numbers of a kind of clump as the seeds use them. Pairs are the smallest value and how many steps
 /// there are from it, in 1/4096 m.
