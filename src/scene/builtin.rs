@@ -79,6 +79,8 @@ pub fn load_builtin(name: &str) -> Option<Result<LoadedScene, SceneError>> {
 }
 
 #[cfg(test)]
+mod shipped_maps;
+#[cfg(test)]
 mod shipped_meshes;
 
 #[cfg(test)]

@@ -151,7 +151,7 @@ fn of_size(from: [u32; 2], to: [u32; 2], value: impl Fn(BetweenTexels) -> u32) -
     let middle = |n: u32, a: usize| {
         let (from, to) = (u64::from(from[a]), u64::from(to[a]));
         // At most the side of a map in units of 2⁻¹⁶, which fits.
-        (((2 * u64::from(n) + 1) * from << 15) / to) as u32
+        ((((2 * u64::from(n) + 1) * from) << 15) / to) as u32
     };
     let rows = 0..to[1];
     rows.flat_map(|row| (0..to[0]).map(move |column| [column, row]))

@@ -1,11 +1,15 @@
 //! Billboards: how many, which and how they grow, as the device has them, against Rust.
 
+use std::time::Instant;
+
 use libtest_mimic::Failed;
 use sward::field::Field;
 use sward::field::billboards::PackedBillboard;
 use sward::gpu::billboard_place::BillboardPlacing;
 use sward::scene::assets::{Assets, DirectionMap, GreyMap};
-use sward::scene::{Billboards, ClumpKind, Messiness, Solver};
+use sward::scene::builtin::ASSETS;
+use sward::scene::{Billboards, ClumpKind, Messiness, Solver, parse_scene_with};
+use sward::sim::Meadow;
 use sward::terrain::CoverMap;
 
 use super::Device;
@@ -72,9 +76,12 @@ fn signed(word: u32) -> [i32; 2] {
 /// 1/32767 on both sides from numbers that differ by some 5e-7, 0.016 steps: one step apart for at most
 /// 2 · 2 · 0.016 = 7% of them. An edge follows from the direction's steps; of equal ones it is at most one
 /// step apart. (Of an almost upright clump one step may turn the edge anywhere.)
-fn agree(device: &Device, billboards: &Billboards, tile_m: f32) -> Result<(), Failed> {
-    let field = field(billboards, tile_m)?;
-    let placed = BillboardPlacing::new(&device.gpu)?.lay_out(&device.gpu, &field)?;
+fn agree(device: &Device, field: &Field) -> Result<(), Failed> {
+    let placing = BillboardPlacing::new(&device.gpu)?;
+    let started = Instant::now();
+    let placed = placing.lay_out(&device.gpu, field)?;
+    device.gpu.wait()?;
+    let took_ms = 1e3 * started.elapsed().as_secs_f64();
     let placed = placed.ok_or("the field has billboards")?;
     let own = field
         .billboards
@@ -120,7 +127,10 @@ fn agree(device: &Device, billboards: &Billboards, tile_m: f32) -> Result<(), Fa
         }
         equal += usize::from(got == want);
     }
-    println!("{equal} of {} billboards equal bit for bit", own.all.len());
+    println!(
+        "{equal} of {} billboards on {tiles} tiles equal bit for bit; laid out in {took_ms:.1} ms",
+        own.all.len()
+    );
     heights.check(3e-6)?;
     ups.check(1.0)?;
     edges.check(1.0)?;
@@ -141,14 +151,25 @@ pub fn billboards_are_equal(device: &Device) -> Result<(), Failed> {
         ..Billboards::default()
     };
     for tile_m in [0.5, 1.0, 2.0] {
-        agree(device, &mapped, tile_m)?;
+        agree(device, &field(&mapped, tile_m)?)?;
     }
     let plain = Billboards {
         clumps: clumps(),
         messiness: Messiness::Even(1.0),
         ..Billboards::default()
     };
-    agree(device, &plain, 1.0)
+    agree(device, &field(&plain, 1.0)?)
+}
+
+/// The scene of the paper's measurements.
+pub fn sixty_thousand_billboards_are_equal(device: &Device) -> Result<(), Failed> {
+    let source = include_str!("../../scenes/waiting/meadow_60k.ron");
+    let loaded = parse_scene_with("meadow_60k", source, &ASSETS)?;
+    let started = Instant::now();
+    let meadow = Meadow::new(loaded.scene, &loaded.assets)?;
+    let took_ms = 1e3 * started.elapsed().as_secs_f64();
+    println!("laid out in Rust, with ground and bodies, in {took_ms:.1} ms");
+    agree(device, &meadow.field)
 }
 
 /// More tiles than one row of sums has, by one: the sums of rows count.

@@ -36,6 +36,10 @@ const CHECKS: &[(&str, Check)] = &[
     ),
     ("billboards_are_equal", billboards::billboards_are_equal),
     (
+        "sixty_thousand_billboards_are_equal",
+        billboards::sixty_thousand_billboards_are_equal,
+    ),
+    (
         "ranges_of_many_tiles_are_equal",
         billboards::ranges_of_many_tiles_are_equal,
     ),
