@@ -77,6 +77,7 @@ fn values_of_the_wrong_type() {
         body!("shape: Box(size_m: (1, 2, 3, 4))") => "2:42" "bodies[0].shape.size_m": "more values";
         body!("shape: Ball(radius_m: 1), above_ground: 1") => "2:53" "bodies[0].above_ground": "true or false";
         "(bodies: (name: \"a\"))" => "1:10" "bodies": "square brackets";
+        "(billboards: (messiness: 0.5))" => "1:26" "billboards.messiness": "is 0.5", "name of a choice";
         "(solver: (segments: 4.5))" => "1:21" "solver.segments": "4.5", "whole number";
         "(solver: (segments: -1))" => "1:21" "solver.segments": "-1", "whole number";
         "(solver: (segments: 5000000000))" => "1:21" "solver.segments": "5000000000";
