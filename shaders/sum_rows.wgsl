@@ -1,5 +1,5 @@
 // Prefix sums of rows of one length: every number becomes the sum of those before it in its row.
-// One workgroup per row. Host: src/render/sum_rows.rs.
+// One workgroup per row. Host: src/gpu/sum_rows.rs.
 
 // The length of every row, in its first word.
 @group(1) @binding(0) var<storage, read> length: array<u32>;

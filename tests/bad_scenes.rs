@@ -77,6 +77,7 @@ fn values_of_the_wrong_type() {
         body!("shape: Box(size_m: (1, 2, 3, 4))") => "2:42" "bodies[0].shape.size_m": "more values";
         body!("shape: Ball(radius_m: 1), above_ground: 1") => "2:53" "bodies[0].above_ground": "true or false";
         "(bodies: (name: \"a\"))" => "1:10" "bodies": "square brackets";
+        "(billboards: (messiness: 0.5))" => "1:26" "billboards.messiness": "is 0.5", "name of a choice";
         "(solver: (segments: 4.5))" => "1:21" "solver.segments": "4.5", "whole number";
         "(solver: (segments: -1))" => "1:21" "solver.segments": "-1", "whole number";
         "(solver: (segments: 5000000000))" => "1:21" "solver.segments": "5000000000";
@@ -126,6 +127,18 @@ fn numbers_out_of_range() {
         body!("shape: Ball(radius_m: 1), coat: (rgb: (0, 0, 2))") => "2:58" "bodies[0].coat.rgb[2]": "is 2";
         body!("shape: Ball(radius_m: 1), coat: (lean_deg: (0, 91))") => "2:60" "bodies[0].coat.lean_deg[1]": "0 to 90 degrees";
         body!("shape: Ball(radius_m: 1), coat: (lean: 3)") => "2:46" "bodies[0].coat.lean": "no known key", "lean_deg";
+        "(billboards: (density_per_m2: -1))" => "1:31" "billboards.density_per_m2": "is -1", "0 to 1000 billboards/m2";
+        "(billboards: (nodes: (2, 4)))" => "1:23" "billboards.nodes[0]": "is 2", "3 to 9 nodes";
+        "(billboards: (nodes: (4, 10)))" => "1:26" "billboards.nodes[1]": "is 10";
+        "(billboards: (clumps: []))" => "1:23" "billboards.clumps": "no share above 0";
+        "(billboards: (clumps: [(share: 0)]))" => "1:23" "billboards.clumps": "no share above 0";
+        "(billboards: (clumps: [(), (), (), (), (), (), (), (), ()]))" => "1:23" "billboards.clumps": "9 kinds of clumps", "at most 8";
+        "(billboards: (clumps: [(height_m: (1, 11))]))" => "1:39" "billboards.clumps[0].height_m[1]": "0.01 to 10 m";
+        "(billboards: (clumps: [(width_m: (2, 1))]))" => "1:34" "billboards.clumps[0].width_m": "smaller value first";
+        "(billboards: (clumps: [(look: Palm)]))" => "1:31" "billboards.clumps[0].look": "`Palm`", "Flowering";
+        "(billboards: (clumps: [(season: Monsoon)]))" => "1:33" "billboards.clumps[0].season": "`Monsoon`", "Winter";
+        "(billboards: (messiness: Even(1.5)))" => "1:26" "billboards.messiness": "is 1.5", "0 to 1";
+        "(billboards: (extent: \"none.png\"))" => "1:23" "billboards.extent": "none.png";
         "(terrain: (base_map: \"none.png\"))" => "1:22" "terrain.base_map": "none.png";
         "(terrain: (lush_rgb: (0, 2, 0)))" => "1:26" "terrain.lush_rgb[1]": "is 2", "0 to 1";
         "(terrain: (ground: Flat(size_m: (8, 0))))" => "1:37" "terrain.ground.size_m[1]": "is 0";
@@ -206,6 +219,8 @@ fn counts_over_budget() {
         "(grass: (density_per_m2: 10000), solver: (tile_m: 32, seeding_cell_m: 8),\n terrain: (ground: Flat(size_m: (64, 64), spacing_m: 8)))" => "1:26" "grass.density_per_m2": "10240000 plants in a tile", "65536";
         "(solver: (tile_m: 8))" => "1:19" "solver.tile_m": "is 8 m", "0.5 m", "write 2 m";
         "(terrain: (ground: Flat(size_m: (5000, 5000), spacing_m: 2)))" => "1:20" "terrain.ground": "25000000 tiles", "16777216";
+        "(billboards: (density_per_m2: 1000), solver: (tile_m: 8, seeding_cell_m: 2),\n terrain: (ground: Flat(size_m: (8, 8), spacing_m: 2)))" => "1:31" "billboards.density_per_m2": "64000 billboards in a tile", "4096";
+        "(billboards: (density_per_m2: 50), terrain: (ground: Flat(size_m: (300, 300))))" => "1:31" "billboards.density_per_m2": "4500000 billboards", "4194304";
         // 24 m2 a box; then 4π m2 a ball, in the script too.
         body!("shape: Box(size_m: (2, 2, 2)), coat: (per_m2: 50000)") => "2:59" "bodies[0].coat.per_m2": "is 50000", "1200000 plants on 24.000 m2", "1048576";
         "(bodies: [(name: \"a\", shape: Ball(radius_m: 1), coat: (per_m2: 70000))],\n script: [(at_s: 1, action: Spawn(name: \"b\", shape: Ball(radius_m: 1), coat: (per_m2: 20000)))])" => "2:87" "script[0].action.coat.per_m2": "251327 plants", "makes 1130973", "1048576";

@@ -31,13 +31,18 @@ This page is written from the program: see `tests/reference.rs`.
 ";
 
 /// The types in the order a reader wants them; others follow by name.
-const FIRST: [&str; 16] = [
+const FIRST: [&str; 21] = [
     "Terrain",
     "Ground",
     "Grass",
     "Species",
     "Form",
     "Likes",
+    "Billboards",
+    "Messiness",
+    "ClumpKind",
+    "ClumpLook",
+    "Season",
     "Wind",
     "Body",
     "Shape",

@@ -2,7 +2,7 @@
 // for bit.
 #import "shared/field.wgsl"
 #import "shared/fixed.wgsl"
-#import "shared/philox.wgsl"
+#import "shared/on_map.wgsl"
 
 // The base map as it is stored: sRGB bytes.
 @group(0) @binding(4) var base_texels: texture_2d<u32>;
@@ -17,19 +17,12 @@ struct KindChoice {
 // The map's colour at a place in units of 2⁻¹⁶ texel, mixed between texels, in units of 2⁻⁸ of a
 // byte's step.
 fn map_colour(place: vec2u) -> vec3u {
-    // A texel's colour lies in its middle.
-    let at = max(place, vec2u(1u << 15u)) - vec2u(1u << 15u);
-    let last = field.map_texels - vec2u(1u);
-    let low = min(at >> vec2u(16u), last);
-    let high = min(low + vec2u(1u), last);
-    let share = (at >> vec2u(8u)) & vec2u(255u);
-    let c00 = textureLoad(base_texels, low, 0).rgb;
-    let c10 = textureLoad(base_texels, vec2u(high.x, low.y), 0).rgb;
-    let c01 = textureLoad(base_texels, vec2u(low.x, high.y), 0).rgb;
-    let c11 = textureLoad(base_texels, high, 0).rgb;
-    let near = c00 * (256u - share.x) + c10 * share.x;
-    let far = c01 * (256u - share.x) + c11 * share.x;
-    return (near * (256u - share.y) + far * share.y) >> vec3u(8u);
+    let at = between_texels(place, field.map_texels);
+    let c00 = textureLoad(base_texels, at.low, 0).rgb;
+    let c10 = textureLoad(base_texels, vec2u(at.high.x, at.low.y), 0).rgb;
+    let c01 = textureLoad(base_texels, vec2u(at.low.x, at.high.y), 0).rgb;
+    let c11 = textureLoad(base_texels, at.high, 0).rgb;
+    return mix_texels(at.shares, c00, c10, c01, c11) >> vec3u(8u);
 }
 
 fn hue_edge(first: u32, second: u32, spread: u32) -> i32 {
@@ -111,13 +104,4 @@ fn choose_kind(place: vec2u, word: u32) -> KindChoice {
         return KindChoice(second, chance);
     }
     return KindChoice(first.kind, 65536u - chance);
-}
-
-// Place on the map of a place in a cell, both in units of 2⁻²⁴ cell.
-fn place_on_map(anchor_on_map: vec2u, cell: vec2u, in_cell: vec2u) -> vec2u {
-    let in_anchor = ((cell % vec2u(ANCHOR_CELLS)) << vec2u(24u)) + in_cell;
-    // The far end of the last cell would carry.
-    let local = min(in_anchor, vec2u((ANCHOR_CELLS << 24u) - 1u)) << vec2u(6u);
-    return anchor_on_map
-        + vec2u(multiply_high(local.x, field.map_step), multiply_high(local.y, field.map_step));
 }

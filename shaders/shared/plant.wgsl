@@ -118,7 +118,10 @@ fn choice_of(tile: TileRecord, seed: Seed) -> KindChoice {
     if field.taste_count == 0u {
         return by_share(seed.word);
     }
-    return choose_kind(place_on_map(tile.anchor_on_map, seed.cell, seed.middle), seed.word);
+    return choose_kind(
+        place_on_map(tile.anchor_on_map, field.map_step, seed.cell, seed.middle),
+        seed.word,
+    );
 }
 
 // The plant of a seed, of a kind that is known.

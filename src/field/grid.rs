@@ -113,16 +113,16 @@ impl FieldGrid {
             .into_iter()
             .find(|&n| cell_m * n as f32 <= solver.tile_m * 1.000_001)
             .unwrap_or(1);
-        let mean = f64::from(grass.density_per_m2) * 0.5 * f64::from(cell_m) * f64::from(cell_m);
-        let grid = Self {
+        let bare = Self {
             halvings,
             cell_m,
             cells,
             tile_cells,
             tiles: cells.map(|n| n.div_ceil(tile_cells)),
-            sure_plants: mean.floor() as u32,
-            one_more: ((mean - mean.floor()) * 4_294_967_296.0) as u32,
+            sure_plants: 0,
+            one_more: 0,
         };
+        let grid = bare.with_density(grass.density_per_m2);
         let plants = u64::from(grid.triangles_per_tile()) * u64::from(grid.plants_per_triangle());
         if plants > MAX_PLANTS_PER_TILE {
             return Err(GridError::TileTooFull {
@@ -131,6 +131,17 @@ impl FieldGrid {
             });
         }
         Ok(grid)
+    }
+
+    /// The same division of the ground with another mean number of plants per square metre.
+    pub fn with_density(&self, density_per_m2: f32) -> Self {
+        let cell_m = f64::from(self.cell_m);
+        let mean = f64::from(density_per_m2) * 0.5 * cell_m * cell_m;
+        Self {
+            sure_plants: mean.floor() as u32,
+            one_more: ((mean - mean.floor()) * 4_294_967_296.0) as u32,
+            ..self.clone()
+        }
     }
 
     /// Side of a tile, in metres.

@@ -15,9 +15,10 @@ use std::sync::Arc;
 
 use crate::base::fixed::{exp2_minus_q15, log2_q12};
 use crate::scene::{Grass, Likes};
-use crate::terrain::ColourMap;
+use crate::terrain::{BetweenTexels, ColourMap};
 
-use super::grid::{ANCHOR_CELLS, Anchor, FieldGrid};
+use super::grid::FieldGrid;
+use super::on_map::OnMap;
 
 /// Most kinds and bare grounds together.
 pub const MAX_TASTES: usize = crate::scene::limits::SPECIES + crate::scene::limits::BARE_GROUNDS;
@@ -59,8 +60,7 @@ pub struct Kinds {
     /// How many of the tastes are kinds'.
     pub kinds: usize,
     pub map: Arc<ColourMap>,
-    /// Texels along the side of a seeding cell, in units of 2⁻¹⁸.
-    pub step: u32,
+    pub on_map: OnMap,
 }
 
 impl Kinds {
@@ -74,38 +74,11 @@ impl Kinds {
             .iter()
             .map(|kind| taste(&kind.likes.clone().unwrap_or_default(), kind.share));
         let of_bare = grass.bare.iter().map(|likes| taste(likes, 1.0));
-        let texels_per_cell = f64::from(grid.cell_m) / map.texel_m;
         Some(Self {
             tastes: of_kinds.chain(of_bare).collect(),
             kinds: grass.species.len(),
+            on_map: OnMap::new(grid, map.texel_m),
             map,
-            // Saturates for more than 16,384 texels in a cell: more than a map has on a side.
-            step: (texels_per_cell * 262_144.0).round() as u32,
-        })
-    }
-
-    /// Place of an anchor's origin on the map, in units of 2⁻¹⁶ texel.
-    pub fn anchor_on_map(&self, grid: &FieldGrid, anchor: &Anchor) -> [u32; 2] {
-        let side_m = f64::from(ANCHOR_CELLS) * f64::from(grid.cell_m);
-        let texels = side_m / self.map.texel_m;
-        anchor
-            .index
-            .map(|n| (f64::from(n) * texels * 65_536.0).round() as u32)
-    }
-
-    /// Place on the map of a place in a cell, both in units of 2⁻²⁴ cell.
-    pub fn place_on_map(
-        &self,
-        anchor_on_map: [u32; 2],
-        cell: [u32; 2],
-        in_cell: [u32; 2],
-    ) -> [u32; 2] {
-        [0, 1].map(|a| {
-            let in_anchor = ((cell[a] % ANCHOR_CELLS) << 24) + in_cell[a];
-            // The far end of the last cell would carry.
-            let in_anchor = in_anchor.min((ANCHOR_CELLS << 24) - 1) << 6;
-            let texels = (u64::from(in_anchor) * u64::from(self.step)) >> 32;
-            anchor_on_map[a] + texels as u32
         })
     }
 
@@ -141,27 +114,8 @@ impl Kinds {
 
     /// The map's colour at a place, mixed between texels, in units of 2⁻⁸ of a byte's step.
     fn colour(&self, place: [u32; 2]) -> [u32; 3] {
-        let size = [self.map.columns, self.map.rows];
-        // A texel's colour lies in its middle.
-        let at = place.map(|p| p.max(1 << 15) - (1 << 15));
-        let low = [0, 1].map(|a| (at[a] >> 16).min(size[a] - 1));
-        let high = [0, 1].map(|a| (low[a] + 1).min(size[a] - 1));
-        let [u, v] = at.map(|p| (p >> 8) & 255);
-        let texel = |x: u32, y: u32| {
-            let first = (y as usize * size[0] as usize + x as usize) * 4;
-            [0, 1, 2].map(|c| u32::from(self.map.rgba8[first + c]))
-        };
-        let corners = [
-            texel(low[0], low[1]),
-            texel(high[0], low[1]),
-            texel(low[0], high[1]),
-            texel(high[0], high[1]),
-        ];
-        [0, 1, 2].map(|c| {
-            let near = corners[0][c] * (256 - u) + corners[1][c] * u;
-            let far = corners[2][c] * (256 - u) + corners[3][c] * u;
-            (near * (256 - v) + far * v) >> 8
-        })
+        let between = BetweenTexels::at(place, [self.map.columns, self.map.rows]);
+        [0, 1, 2].map(|c| between.mix(|texel| self.map.rgba8[4 * texel + c].into()) >> 8)
     }
 }
 

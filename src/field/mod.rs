@@ -1,5 +1,6 @@
 //! The meadow at rest: where plants stand, what shape they have, which tiles are awake.
 
+pub mod billboards;
 pub mod blade_shape;
 pub mod blade_table;
 pub mod clusters;
@@ -9,12 +10,14 @@ pub mod grid;
 pub mod in_view;
 pub mod kinds;
 pub mod octree;
+pub mod on_map;
 pub mod plant;
 pub mod pose;
 pub mod slabs;
 pub mod tiles;
 pub mod wind;
 
+pub use billboards::{Billboard, BillboardError, BillboardField};
 pub use blade_table::BladeTable;
 pub use grid::{Anchor, FieldGrid, TileId};
 pub use kinds::Kinds;
@@ -28,9 +31,9 @@ pub use wind::WindNow;
 use std::sync::Arc;
 
 use crate::base::most;
-use crate::scene::{Grass, Solver};
+use crate::scene::{Billboards, Grass, Solver};
 use crate::terrain::bintree::Bintree;
-use crate::terrain::{ColourMap, HeightGrid};
+use crate::terrain::{ColourMap, CoverMap, HeightGrid};
 
 /// Everything about a meadow that does not change while it is simulated.
 #[derive(Clone, Debug)]
@@ -41,6 +44,8 @@ pub struct Field {
     pub seeds: Seeds,
     pub table: BladeTable,
     pub octree: Octree,
+    /// The second layer, of a scene that has one.
+    pub billboards: Option<Arc<BillboardField>>,
     /// Length of the longest blade, in metres: how far a plant can reach from its root.
     pub reach_m: f32,
 }
@@ -52,6 +57,8 @@ pub enum FieldError {
     Grid(#[from] grid::GridError),
     #[error(transparent)]
     Table(#[from] blade_table::TableError),
+    #[error(transparent)]
+    Billboards(#[from] BillboardError),
     #[error(
         "the kinds of plants have `likes`, so they need a base map: lay the field out with `on_map`"
     )]
@@ -85,6 +92,21 @@ impl Field {
         Ok(field)
     }
 
+    /// The same field with billboards on it, as their maps say.
+    ///
+    /// # Errors
+    /// More billboards than a tile or a field may hold.
+    pub fn with_billboards(
+        mut self,
+        billboards: &Billboards,
+        map: CoverMap,
+    ) -> Result<Self, FieldError> {
+        let rounds = self.seeds.rounds;
+        let field = BillboardField::new(&self.ground, &self.grid, map, billboards, rounds)?;
+        self.billboards = Some(Arc::new(field));
+        Ok(self)
+    }
+
     fn laid_out(ground: HeightGrid, grass: &Grass, solver: &Solver) -> Result<Self, FieldError> {
         let grid = FieldGrid::new(&ground, grass, solver)?;
         let table = BladeTable::new(grass, solver.segments, solver.root, solver.blade_table)?;
@@ -102,6 +124,7 @@ impl Field {
             seeds,
             table,
             octree,
+            billboards: None,
             reach_m,
         })
     }

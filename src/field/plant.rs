@@ -151,18 +151,13 @@ impl Seeds {
         let choice = match &self.kinds {
             None => self.by_share(sown.word),
             Some(kinds) => {
-                let origin = kinds.anchor_on_map(grid, anchor);
+                let origin = kinds.on_map.anchor(grid, anchor);
                 let middle = self::in_cell(cell, half, sown.middle);
-                kinds.choose(kinds.place_on_map(origin, cell, middle), sown.word)
+                kinds.choose(kinds.on_map.place(origin, cell, middle), sown.word)
             }
         };
         let species = choice.kind?;
-        let [x, z] = [0, 1].map(|a| {
-            // At most 2²⁴ steps: exact.
-            let share = in_cell[a] as f32 * (1.0 / CELL_STEPS as f32);
-            ((cell[a] % ANCHOR_CELLS) as f32 + share) * grid.cell_m
-        });
-        let root_in_anchor = [x, ground_in_anchor(ground, anchor, x, z), z];
+        let root_in_anchor = root_in_anchor(grid, ground, anchor, cell, in_cell);
         Some(self.grow(words, species, choice.thrives, root_in_anchor))
     }
 
@@ -243,7 +238,7 @@ pub const CELL_STEPS: u32 = 1 << 24;
 /// words (eq. 25). Half 0 of an evenly cut cell has its right angle at (1, 0), half 1 at (0, 1); of
 /// an oddly cut one at (0, 0) and (1, 1). From the right angle both legs run along the axes, so that
 /// no vertices are needed.
-fn in_cell(cell: [u32; 2], half: u32, [a, b]: [u32; 2]) -> [u32; 2] {
+pub(super) fn in_cell(cell: [u32; 2], half: u32, [a, b]: [u32; 2]) -> [u32; 2] {
     let even = (cell[0] + cell[1]) & 1 == 0;
     let along = |at_end: bool, r: u32| {
         if at_end {
@@ -253,6 +248,22 @@ fn in_cell(cell: [u32; 2], half: u32, [a, b]: [u32; 2]) -> [u32; 2] {
         }
     };
     [along(even != (half == 1), a), along(half == 1, b)]
+}
+
+/// Place on the ground of a place in a cell in units of 2⁻²⁴ of its side, in the anchor's coordinates.
+pub(super) fn root_in_anchor(
+    grid: &FieldGrid,
+    ground: &HeightGrid,
+    anchor: &Anchor,
+    cell: [u32; 2],
+    in_cell: [u32; 2],
+) -> [f32; 3] {
+    let [x, z] = [0, 1].map(|a| {
+        // At most 2²⁴ steps: exact.
+        let share = in_cell[a] as f32 * (1.0 / CELL_STEPS as f32);
+        ((cell[a] % ANCHOR_CELLS) as f32 + share) * grid.cell_m
+    });
+    [x, ground_in_anchor(ground, anchor, x, z), z]
 }
 
 fn numbers(kind: &Species, range: &SpeciesRange, share_below: u32) -> SpeciesNumbers {

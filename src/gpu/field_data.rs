@@ -205,7 +205,7 @@ impl FieldUniform {
                 Spacing::Even | Spacing::FourthPower => NO_KNEE,
             },
             map_texels: kinds.map_or([1; 2], |k| [k.map.columns, k.map.rows]),
-            map_step: kinds.map_or(0, |k| k.step),
+            map_step: kinds.map_or(0, |k| k.on_map.step),
             taste_count: kinds.map_or(0, |k| k.tastes.len() as u32),
             cluster: seeds.cluster,
             spare_a: 0,
@@ -280,7 +280,7 @@ impl TileRecord {
             state: TILE_RESTING,
             first_contact: 0,
             end_contact: 0,
-            anchor_on_map: kinds.map_or([0; 2], |kinds| kinds.anchor_on_map(grid, anchor)),
+            anchor_on_map: kinds.map_or([0; 2], |kinds| kinds.on_map.anchor(grid, anchor)),
         }
     }
 }

@@ -27,11 +27,15 @@ pub trait GpuStruct: Pod {
 
 /// Layouts of the structs that the shaders of this layer read.
 pub fn layouts() -> Vec<StructLayout> {
+    use super::billboard_place::{BillboardRecord, BillboardUniform, ClumpUniform};
     use super::field_data::{
         FieldUniform, SpeciesUniform, TasteUniform, TileRecord, WaveUniform, WindUniform,
     };
     use super::tick_data::{ContactRecord, CubeJob, PartRecord, SolidRecord, TickUniform};
     vec![
+        BillboardRecord::layout(),
+        BillboardUniform::layout(),
+        ClumpUniform::layout(),
         ContactRecord::layout(),
         CubeJob::layout(),
         FieldUniform::layout(),

@@ -6,6 +6,7 @@
 //! the adapter has them and for timestamps, which are optional.
 
 mod base_texels;
+pub mod billboard_place;
 mod buffer;
 pub mod cubes;
 mod device;
@@ -17,6 +18,7 @@ mod grass_state;
 mod late_count;
 pub mod layout;
 pub mod passes;
+pub mod sum_rows;
 mod texture;
 mod tick;
 pub mod tick_data;

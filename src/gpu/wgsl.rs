@@ -7,12 +7,17 @@
 
 use std::fmt::Write;
 
+use super::billboard_place::ROW_TILES;
 use super::field_data::{NO_SLAB, TILE_COLLIDING, TILE_RECOVERING, TILE_RESTING};
 use super::grass_buffers::{RELAX_GROUPS, TOUCHED_HEADER};
 use super::passes::{MOST_GROUPS, WORKGROUP};
 use super::tick_data::{SOLID_BALL, SOLID_BOX, SOLID_CAPSULE, SOLID_CONVEX, SOLID_CYLINDER};
 use crate::base::fixed::{EXP2_TABLE, LOG2_TABLE};
 use crate::base::trig::SINE_QUARTER;
+use crate::field::billboards::{
+    AZIMUTH_STEPS, BILLBOARD_COUNT_WORD, BILLBOARD_WORD, CLUMP_VARIANTS, FACES_FROM, FINE_STEPS,
+    MAX_CLUMPS, MOST_TILT_TURNS, UNIT_STEP, UNIT_STEPS,
+};
 use crate::field::clusters::{CLUSTER_WORD, GRID_WORD};
 use crate::field::grid::ANCHOR_CELLS;
 use crate::field::kinds::{HUE_TURN, LEAST_SQUARED, MAX_TASTES};
@@ -119,6 +124,14 @@ macro_rules! wgsl_file {
 
 /// Files that any layer's shaders may import.
 pub const SHARED: &[WgslFile] = &[
+    wgsl_file!(
+        "shared/billboard.wgsl",
+        AZIMUTH_STEPS,
+        CLUMP_VARIANTS,
+        FINE_STEPS,
+        UNIT_STEP,
+        UNIT_STEPS
+    ),
     wgsl_file!("shared/clusters.wgsl", CLUSTER_WORD, GRID_WORD),
     wgsl_file!("shared/contact.wgsl", FACE_MASK, NO_FACE, ON_SURFACE_M),
     wgsl_file!(
@@ -132,13 +145,8 @@ pub const SHARED: &[WgslFile] = &[
     wgsl_file!("shared/field.wgsl", MAX_SPECIES, MAX_TASTES),
     wgsl_file!("shared/fixed.wgsl", EXP2_TABLE, LOG2_TABLE),
     wgsl_file!("shared/ground.wgsl"),
-    wgsl_file!(
-        "shared/kinds.wgsl",
-        ANCHOR_CELLS,
-        HUE_TURN,
-        LEAST_SQUARED,
-        MAX_TASTES
-    ),
+    wgsl_file!("shared/kinds.wgsl", HUE_TURN, LEAST_SQUARED, MAX_TASTES),
+    wgsl_file!("shared/on_map.wgsl", ANCHOR_CELLS),
     wgsl_file!("shared/philox.wgsl"),
     wgsl_file!("shared/plant.wgsl", ANCHOR_CELLS, CELL_STEPS),
     wgsl_file!("shared/pose.wgsl", MAX_NODES),
@@ -176,6 +184,22 @@ pub const SHARED: &[WgslFile] = &[
 
 /// One file per compute pass.
 pub const PASSES: &[WgslFile] = &[
+    wgsl_file!(
+        "billboard_place.wgsl",
+        ANCHOR_CELLS,
+        BILLBOARD_COUNT_WORD,
+        BILLBOARD_WORD,
+        CELL_STEPS,
+        CLUMP_VARIANTS,
+        FACES_FROM,
+        MAX_CLUMPS,
+        MOST_TILT_TURNS,
+        NO_SLAB,
+        ROW_TILES,
+        UNIT_STEP,
+        UNIT_STEPS,
+        WORKGROUP,
+    ),
     wgsl_file!("collide.wgsl", PINNED_M, WORKGROUP),
     wgsl_file!("depth_cube.wgsl", WORKGROUP),
     wgsl_file!("recover.wgsl", WORKGROUP),
@@ -193,6 +217,7 @@ pub const PASSES: &[WgslFile] = &[
         STICKS,
         WORKGROUP,
     ),
+    wgsl_file!("sum_rows.wgsl", WORKGROUP),
     wgsl_file!("turns.wgsl"),
 ];
 

@@ -6,6 +6,7 @@
 use wgpu::BufferUsages;
 
 use crate::gpu::passes::{Access, Groups, Kernel, MOST_GROUPS, Recording, WORKGROUP};
+use crate::gpu::sum_rows::{RowSums, Rows};
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::gpu_struct;
 
@@ -17,7 +18,6 @@ use super::coat::{CoatDetail, DrawnCoats, STEPS};
 use super::coat_scene::CoatScene;
 use super::error::RenderError;
 use super::sort_plants::CountUniform;
-use super::sum_rows::{RowSums, Rows};
 
 /// Forms of plants.
 pub(super) const COAT_FORMS: u32 = 2;

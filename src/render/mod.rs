@@ -29,7 +29,6 @@ mod seed_triangles;
 mod shadow;
 mod sky;
 mod sort_plants;
-mod sum_rows;
 mod targets;
 mod terrain;
 mod tonemap;
@@ -154,7 +153,6 @@ pub const SHADERS: &[WgslFile] = &[
         WIDEN_POWER,
         WORKGROUP
     ),
-    wgsl_file!("sum_rows.wgsl", WORKGROUP),
     wgsl_file!(
         "terrain.wgsl",
         CHUNK_SAMPLES,

@@ -8,11 +8,11 @@ use wgpu::BufferUsages;
 
 use crate::field::count::BINS;
 use crate::gpu::passes::{Access, Groups, Kernel, MOST_GROUPS, Recording, WORKGROUP};
+use crate::gpu::sum_rows::{RowSums, Rows};
 use crate::gpu::{Buffer, Gpu, GpuError};
 
 use super::SHADERS;
 use super::blade_tiles::{DrawnTile, Submission};
-use super::sum_rows::{RowSums, Rows};
 
 /// Words of the list's head: its jobs (WORKGROUP clusters each), the workgroups that take them (three
 /// words), its clusters, the cluster at which each bin ends, the triangles before each bin.

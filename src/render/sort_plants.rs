@@ -9,6 +9,7 @@ use wgpu::BufferUsages;
 use crate::field::count::{BINS, Bins, clusters_in};
 use crate::field::plant::MAX_SPECIES;
 use crate::gpu::passes::{Access, Groups, Kernel, Recording, WORKGROUP};
+use crate::gpu::sum_rows::{RowSums, Rows};
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::gpu_struct;
 
@@ -18,7 +19,6 @@ use super::blades::TUFT_RADIUS_M;
 use super::camera::View;
 use super::plant_form::{BUCKETS, DETAILS, FORM_COUNT, FORMS};
 use super::seed_triangles::{LIST_GROUPS, SeedTriangles, SeededTriangles};
-use super::sum_rows::{RowSums, Rows};
 
 /// A cluster that is not seen, and one on bare ground.
 pub(super) const NO_BUCKET: u32 = 63;

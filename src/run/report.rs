@@ -151,6 +151,8 @@ pub struct Metrics {
     pub tiles_total: u64,
     pub tiles_active_peak: u64,
     pub plants_simulated_peak: u64,
+    /// Billboards of the scene, resting ones included.
+    pub billboards: u64,
     pub state_bytes_peak: u64,
     /// Plants with a value that is not finite, summed over frames.
     pub nan_count: u64,
@@ -279,6 +281,11 @@ impl Metrics {
             tiles_total: u64::from(meadow.field.grid.tile_count()),
             tiles_active_peak: meadow.tiles.peak as u64,
             plants_simulated_peak: meadow.counters.plants_peak,
+            billboards: meadow
+                .field
+                .billboards
+                .as_ref()
+                .map_or(0, |b| b.all.len() as u64),
             state_bytes_peak: meadow.counters.state_bytes_peak,
             nan_count: watch.not_finite,
             quarantined: meadow.bodies.quarantined().to_vec(),
@@ -376,6 +383,7 @@ pub(super) mod tests {
         let mut metrics = keys(&scenario["metrics"]);
         metrics.sort_unstable();
         let want = [
+            "billboards",
             "buried_plants",
             "capped_sweeps",
             "compared_plants",

@@ -175,6 +175,9 @@ fn write_metrics(metrics: &Metrics, out: &mut impl Write) -> io::Result<()> {
         metrics.plants_simulated_peak,
         metrics.state_bytes_peak
     )?;
+    if metrics.billboards > 0 {
+        writeln!(out, "  billboards   {}", metrics.billboards)?;
+    }
     for (count, what) in [
         (metrics.nan_count, "values that are not finite"),
         (

@@ -48,6 +48,18 @@ pub const ASSETS: Embedded<'static> = Embedded(&[
         include_bytes!("../../scenes/assets/chair.gltf"),
     ),
     (
+        "assets/clumps_direction.png",
+        include_bytes!("../../scenes/assets/clumps_direction.png"),
+    ),
+    (
+        "assets/clumps_extent.png",
+        include_bytes!("../../scenes/assets/clumps_extent.png"),
+    ),
+    (
+        "assets/clumps_messiness.png",
+        include_bytes!("../../scenes/assets/clumps_messiness.png"),
+    ),
+    (
         "assets/heath.png",
         include_bytes!("../../scenes/assets/heath.png"),
     ),
@@ -66,6 +78,8 @@ pub fn load_builtin(name: &str) -> Option<Result<LoadedScene, SceneError>> {
     Some(parse_scene_with(found.name, found.source, &ASSETS))
 }
 
+#[cfg(test)]
+mod shipped_maps;
 #[cfg(test)]
 mod shipped_meshes;
 

@@ -74,6 +74,27 @@ pub enum AssetError {
         what: &'static str,
         limit: u64,
     },
+    #[error(
+        "`{file}` has a direction of length {length:.3} in texel ({column}, {row}), shorter than the \
+         limit of {limit}; give that texel a colour farther from mid grey"
+    )]
+    NoDirection {
+        file: String,
+        column: u32,
+        row: u32,
+        length: f64,
+        limit: f64,
+    },
+    #[error(
+        "`{file}` has a direction that rises by {rise:.3} in texel ({column}, {row}), but clumps grow \
+         upwards, so it must be more than 0; give that texel a green of 128 or more"
+    )]
+    DirectionDown {
+        file: String,
+        column: u32,
+        row: u32,
+        rise: f64,
+    },
     #[error("`{file}` holds no solid: {reason}")]
     NoSolid { file: String, reason: String },
 }

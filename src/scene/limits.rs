@@ -82,6 +82,23 @@ pub const COAT_DENSITY: Range = range(0.0, 100_000.0, "plants/m2");
 pub const COAT_PLANTS: u64 = 1 << 20;
 /// Triangles under all coats of a scene.
 pub const COAT_TRIANGLES: u64 = 1 << 20;
+pub const BILLBOARD_DENSITY: Range = range(0.0, 1000.0, "billboards/m2");
+/// Billboards of a field: the list of them is then at most 128 MiB on a device.
+pub const BILLBOARDS: u64 = 1 << 22;
+/// Billboards of one tile.
+pub const BILLBOARDS_PER_TILE: u64 = 4096;
+/// Nodes along one side of a touched billboard.
+pub const BILLBOARD_NODES: Range = range(3.0, 9.0, "nodes");
+/// Kinds of clumps.
+pub const CLUMPS: usize = 8;
+/// Height or width of a clump.
+pub const CLUMP_SIZE: Range = range(0.01, 10.0, "m");
+/// Texels along one side of a map of billboards.
+pub const COVER_MAP_SIDE: u32 = 4096;
+/// Texels of a map of billboards: all three together are then 128 MiB.
+pub const COVER_MAP_TEXELS: u64 = 1 << 24;
+/// Shortest vector of a direction map, of 1 for a unit vector.
+pub const LEAST_DIRECTION: f64 = 0.1;
 /// Seeds of a cluster.
 pub const CLUSTER: Range = range(1.0, 16.0, "seeds");
 /// Grounds on which nothing grows.

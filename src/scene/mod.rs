@@ -5,6 +5,7 @@
 //! writes in degrees; keys carry their unit.
 
 pub mod assets;
+mod billboards;
 mod body;
 pub mod budget;
 pub mod builtin;
@@ -26,6 +27,7 @@ mod terrain;
 mod validate;
 mod wind;
 
+pub use billboards::{Billboards, ClumpKind, ClumpLook, Messiness, Season};
 pub use body::{Body, Collider, Mass, Motion, Part, Shape, Waypoint};
 pub use camera::Camera;
 pub use coat::{Coat, CoatForm, CoatedSurface};
@@ -61,6 +63,8 @@ pub struct Scene {
     pub terrain: Terrain,
     /// What grows on it.
     pub grass: Grass,
+    /// Clumps of grass as billboards, beside the plants or in their place.
+    pub billboards: Option<Billboards>,
     /// Wind at the start.
     pub wind: Wind,
     /// Rigid bodies present from the start. Names are unique in the scene.
@@ -82,6 +86,7 @@ impl Default for Scene {
             duration_s: 4.0,
             terrain: Terrain::default(),
             grass: Grass::default(),
+            billboards: None,
             wind: Wind::default(),
             bodies: Vec::new(),
             script: Vec::new(),

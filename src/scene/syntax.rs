@@ -168,6 +168,9 @@ fn expectation(code: &Error) -> Option<String> {
         Error::ExpectedDifferentStructName { expected, .. } => {
             format!("write {expected}( … ), or only ( … )")
         }
+        Error::InvalidIdentifier(_) | Error::SuggestRawIdentifier(_) => {
+            "write the name of a choice, as in Even(0.5); scenes/README.md lists them".to_owned()
+        }
         Error::InvalidValueForType { expected, .. } => format!("write {expected}"),
         Error::Message(message) => message.clone(),
         _ => return None,

@@ -13,7 +13,7 @@ use crate::field::wind::FADE_S;
 use crate::field::{ActiveTiles, Field, FieldError, Kinds, TileId, TileState, WindNow};
 use crate::scene::assets::Assets;
 use crate::scene::{Action, Event, Invalid, Likes, Scene, Wind, validate};
-use crate::terrain::{ColourMap, HeightGrid, TerrainError};
+use crate::terrain::{ColourMap, CoverMap, HeightGrid, TerrainError};
 
 use super::fault::Planted;
 use super::parts::{Parts, Tested, takes_whole_bodies};
@@ -121,11 +121,17 @@ fn near_movers<'a>(
 }
 
 fn lay_out(ground: HeightGrid, scene: &Scene, assets: &Assets) -> Result<Field, MeadowError> {
-    if !scene.grass.grows_by_colour() {
-        return Ok(Field::new(ground, &scene.grass, &scene.solver)?);
-    }
-    let map = Arc::new(ColourMap::of(&scene.terrain, &ground, assets)?);
-    Ok(Field::on_map(ground, map, &scene.grass, &scene.solver)?)
+    let field = if scene.grass.grows_by_colour() {
+        let map = Arc::new(ColourMap::of(&scene.terrain, &ground, assets)?);
+        Field::on_map(ground, map, &scene.grass, &scene.solver)?
+    } else {
+        Field::new(ground, &scene.grass, &scene.solver)?
+    };
+    let Some(billboards) = &scene.billboards else {
+        return Ok(field);
+    };
+    let map = CoverMap::of(billboards, &field.ground, assets)?;
+    Ok(field.with_billboards(billboards, map)?)
 }
 
 /// No tile awake, and as much state as the budget allows.

@@ -29,6 +29,8 @@ pub enum TerrainError {
     TooManySamples { columns: f64, rows: f64 },
     #[error("terrain: height map `{file}` is not among the loaded assets")]
     MissingHeightMap { file: String },
+    #[error("billboards: map `{file}` is not among the loaded assets")]
+    MissingCoverMap { file: String },
     #[error("terrain: base map `{file}` is not among the loaded assets")]
     MissingBaseMap { file: String },
     #[error(

@@ -1,6 +1,7 @@
 //! Each pass on the device against its twin in Rust, from the same input. Trials need a graphics
 //! adapter: without one they are ignored, and with `SWARD_REQUIRE_GPU=1` the missing adapter fails.
 
+mod billboards;
 mod coats;
 mod compare;
 mod cubes;
@@ -32,6 +33,15 @@ const CHECKS: &[(&str, Check)] = &[
     (
         "kinds_by_colour_are_equal",
         plants::kinds_by_colour_are_equal,
+    ),
+    ("billboards_are_equal", billboards::billboards_are_equal),
+    (
+        "sixty_thousand_billboards_are_equal",
+        billboards::sixty_thousand_billboards_are_equal,
+    ),
+    (
+        "ranges_of_many_tiles_are_equal",
+        billboards::ranges_of_many_tiles_are_equal,
     ),
     ("wind_poses_agree", plants::wind_poses_agree),
     (

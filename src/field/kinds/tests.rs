@@ -174,27 +174,3 @@ fn bare_ground_and_thresholds_leave_the_ground_bare() {
     let choice = undemanding.choose(place, 7);
     assert_eq!((choice.kind, choice.thrives), (Some(0), 65_536));
 }
-
-/// A place is where the map's picture has it: cells and anchors fall on their texels.
-#[test]
-fn places_are_those_of_the_ground() {
-    let map = map([[0; 3]; 8]);
-    let kinds = kinds(&[Likes::default()], &[], map);
-    let ground = HeightGrid::flat(17, 3, 1.0);
-    let grid = FieldGrid::new(&ground, &Grass::default(), &Solver::default()).expect("a grid");
-    for tile in 0..grid.tile_count() {
-        let anchor = grid.anchor_of(tile, &ground);
-        let origin = kinds.anchor_on_map(&grid, &anchor);
-        let cell = grid.first_cell(tile);
-        for in_cell in [[0, 0], [1 << 23, 1 << 22], [1 << 24, (1 << 24) - 1]] {
-            let place = kinds.place_on_map(origin, cell, in_cell);
-            for a in 0..2 {
-                let cells = f64::from(cell[a]) + f64::from(in_cell[a]) / 16_777_216.0;
-                let want = cells * f64::from(grid.cell_m) / 2.0;
-                // Cut off once, the anchor rounded once, the step rounded to 2⁻¹⁸ over four cells.
-                let off = f64::from(place[a]) / 65_536.0 - want;
-                assert!(off.abs() < 2.0 / 65_536.0, "{cell:?} {in_cell:?}: {off}");
-            }
-        }
-    }
-}

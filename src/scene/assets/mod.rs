@@ -2,6 +2,7 @@
 
 mod base64;
 mod base_map;
+mod cover_maps;
 mod gltf;
 mod gltf_buffers;
 mod height_map;
@@ -18,7 +19,7 @@ pub use source::{AssetSource, Embedded, Folders, InOrder};
 
 use super::error::AssetError;
 use super::limits::{ASSET_BYTES, ASSET_FILES};
-use super::{Action, Body, Ground, Scene, Shape};
+use super::{Action, Billboards, Body, Ground, Scene, Shape};
 
 /// Every asset of a scene, by the path the scene gives.
 #[derive(Clone, Debug, Default)]
@@ -26,6 +27,9 @@ pub struct Assets {
     pub meshes: BTreeMap<String, TriangleMesh>,
     pub height_maps: BTreeMap<String, HeightMap>,
     pub base_maps: BTreeMap<String, ColourPicture>,
+    /// Extent and messiness of billboards.
+    pub grey_maps: BTreeMap<String, GreyMap>,
+    pub direction_maps: BTreeMap<String, DirectionMap>,
     /// A hash of the bytes of every file that was read, those named by other assets included.
     pub file_hashes: BTreeMap<String, u64>,
 }
@@ -53,6 +57,42 @@ pub struct ColourPicture {
     pub rows: u32,
     /// Four bytes a texel: red, green and blue encoded as sRGB, and 255.
     pub rgba8: Vec<u8>,
+}
+
+/// A grey picture; the first row lies at the smallest z.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GreyMap {
+    pub columns: u32,
+    pub rows: u32,
+    /// Black is 0, white 65535.
+    pub samples: Vec<u16>,
+}
+
+/// A picture of directions, all of which rise; the first row lies at the smallest z.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DirectionMap {
+    pub columns: u32,
+    pub rows: u32,
+    /// A byte b means 2 b/255 − 1, along x, y and z.
+    pub texels: Vec<[u8; 3]>,
+}
+
+impl Assets {
+    /// Files that have been read.
+    fn count(&self) -> usize {
+        let pictures = self.height_maps.len() + self.base_maps.len();
+        self.meshes.len() + pictures + self.grey_maps.len() + self.direction_maps.len()
+    }
+
+    /// Columns and rows of a map of billboards, by its key and its file.
+    pub(super) fn cover_map_size(&self, key: &str, file: &str) -> Option<[u32; 2]> {
+        if key == "direction" {
+            let map = self.direction_maps.get(file)?;
+            return Some([map.columns, map.rows]);
+        }
+        let map = self.grey_maps.get(file)?;
+        Some([map.columns, map.rows])
+    }
 }
 
 /// Every body of a scene, spawned ones included, with its key.
@@ -86,6 +126,7 @@ pub(super) fn read_assets(
         let map = map.map_err(|e| ("terrain.base_map".to_owned(), e))?;
         assets.base_maps.insert(file.clone(), map);
     }
+    read_cover_maps(scene, source, &mut assets)?;
     for (key, body) in bodies_with_keys(scene) {
         let Shape::Mesh { file, .. } = &body.shape else {
             continue;
@@ -93,9 +134,7 @@ pub(super) fn read_assets(
         if assets.meshes.contains_key(file) {
             continue;
         }
-        let mesh = if assets.meshes.len() + assets.height_maps.len() + assets.base_maps.len()
-            < ASSET_FILES
-        {
+        let mesh = if assets.count() < ASSET_FILES {
             read_mesh(file, source)
         } else {
             Err(AssetError::OverBudget {
@@ -109,6 +148,26 @@ pub(super) fn read_assets(
         assets.meshes.insert(file.clone(), mesh);
     }
     Ok(assets)
+}
+
+fn read_cover_maps(
+    scene: &Scene,
+    source: &dyn AssetSource,
+    assets: &mut Assets,
+) -> Result<(), (String, AssetError)> {
+    for (key, file) in scene.billboards.iter().flat_map(Billboards::maps) {
+        let at_key = |error| (format!("billboards.{key}"), error);
+        let bytes = source.read(file, ASSET_BYTES).map_err(at_key)?;
+        if key == "direction" {
+            let map = guarded(file, || cover_maps::read_direction(file, &bytes));
+            let map = map.map_err(at_key)?;
+            assets.direction_maps.insert(file.clone(), map);
+        } else {
+            let map = guarded(file, || cover_maps::read_grey(file, &bytes));
+            assets.grey_maps.insert(file.clone(), map.map_err(at_key)?);
+        }
+    }
+    Ok(())
 }
 
 /// Reads and checks a mesh; the file's ending tells the format.

@@ -2,6 +2,7 @@
 //!
 //! The checks walk the scene in the order of its keys and stop at the first that fails.
 
+mod billboards;
 mod body;
 mod check;
 mod coat;
@@ -33,10 +34,13 @@ pub fn validate(scene: &Scene) -> Result<(), Invalid> {
     )?;
     meadow::terrain(&root.field("terrain"), &scene.terrain)?;
     meadow::grass(&root.field("grass"), &scene.grass)?;
+    if let Some(cover) = &scene.billboards {
+        billboards::billboards(&root.field("billboards"), cover)?;
+    }
     meadow::wind(&root.field("wind"), &scene.wind)?;
     meadow::solver(&root.field("solver"), &scene.solver)?;
     if let Some(samples) = ground_samples(&scene.terrain.ground) {
-        size(scene, samples)?;
+        billboards::budget(scene, &size(scene, samples)?)?;
     }
     bodies(scene)?;
     coat::budget(scene, &Assets::default())?;
@@ -60,7 +64,9 @@ pub fn validate_assets(scene: &Scene, assets: &Assets) -> Result<(), Invalid> {
     };
     if let Some(samples) = samples {
         base_map(scene, assets, samples)?;
+        billboards::maps(scene, assets, samples)?;
         let field = size(scene, samples)?;
+        billboards::budget(scene, &field)?;
         expect::on_the_ground(&Key::root().field("expect"), scene, &field)?;
     }
     for (key, body) in bodies_with_keys(scene) {
@@ -83,25 +89,26 @@ pub fn validate_assets(scene: &Scene, assets: &Assets) -> Result<(), Invalid> {
     coat::budget(scene, assets)
 }
 
-/// A base map covers the ground with square texels: its sides have the ground's proportions, to
-/// half a texel.
 fn base_map(scene: &Scene, assets: &Assets, samples: [u64; 2]) -> Check {
     let file = scene.terrain.base_map.as_ref();
     let Some(map) = file.and_then(|file| assets.base_maps.get(file)) else {
         return Ok(());
     };
+    let key = Key::root().field("terrain").field("base_map");
+    covers_ground(&key, [map.columns, map.rows], samples)
+}
+
+/// A map covers the ground with square texels: its sides have the ground's proportions, to half a texel.
+fn covers_ground(key: &Key, [columns, rows]: [u32; 2], samples: [u64; 2]) -> Check {
     let [wide, deep] = samples.map(|n| n.saturating_sub(1) as f64);
-    let rows = f64::from(map.columns) * deep / wide;
-    if (rows - f64::from(map.rows)).abs() > 0.5 {
+    let wanted = f64::from(columns) * deep / wide;
+    if (wanted - f64::from(rows)).abs() > 0.5 {
         let what = format!(
-            "has {} by {} texels, but the ground is {wide} by {deep} squares; for {} columns it \
-             needs {} rows",
-            map.columns,
-            map.rows,
-            map.columns,
-            rows.round().max(2.0)
+            "has {columns} by {rows} texels, but the ground is {wide} by {deep} squares; for {columns} \
+             columns it needs {} rows",
+            wanted.round().max(2.0)
         );
-        return Key::root().field("terrain").field("base_map").fail(what);
+        return key.clone().fail(what);
     }
     Ok(())
 }

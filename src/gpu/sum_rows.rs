@@ -1,42 +1,38 @@
 //! Prefix sums of rows of numbers on the device. Shader: `shaders/sum_rows.wgsl`.
 
-use crate::gpu::passes::{Access, Groups, Kernel, Recording, WORKGROUP};
-use crate::gpu::{Buffer, Gpu, GpuError};
-
-use super::SHADERS;
+use super::passes::{Access, Groups, Kernel, Recording, WORKGROUP};
+use super::{Buffer, Gpu, GpuError};
 
 /// Turns every number of some rows into the sum of those before it in its row.
-#[derive(Debug)]
-pub(super) struct RowSums {
+#[derive(Clone, Debug)]
+pub struct RowSums {
     kernel: Kernel,
 }
 
 /// Rows that lie one after the other.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rows<'a> {
+pub struct Rows<'a> {
     /// Numbers of each row, in the first word.
-    pub(super) length: &'a Buffer<u32>,
-    pub(super) rows: &'a Buffer<u32>,
+    pub length: &'a Buffer<u32>,
+    /// Their numbers, row by row.
+    pub rows: &'a Buffer<u32>,
     /// Takes the sum of each whole row.
-    pub(super) totals: &'a Buffer<u32>,
-    pub(super) count: u32,
+    pub totals: &'a Buffer<u32>,
+    /// How many rows.
+    pub count: u32,
 }
 
 impl RowSums {
-    pub(super) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    /// # Errors
+    /// The shader's.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let bindings = [(0, Access::Read), (1, Access::Write), (2, Access::Write)];
-        let kernel = Kernel::of_library(
-            gpu,
-            SHADERS,
-            "sum_rows.wgsl",
-            "sum_rows",
-            &bindings,
-            WORKGROUP,
-        )?;
+        let kernel = Kernel::new(gpu, "sum_rows.wgsl", "sum_rows", &bindings, WORKGROUP)?;
         Ok(Self { kernel })
     }
 
-    pub(super) fn record(&self, gpu: &Gpu, into: &mut Recording<'_>, rows: Rows<'_>) {
+    /// Records the sums of some rows.
+    pub fn record(&self, gpu: &Gpu, into: &mut Recording<'_>, rows: Rows<'_>) {
         let bound = self.kernel.bind(
             gpu,
             &[
