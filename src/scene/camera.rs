@@ -26,6 +26,19 @@ pub struct Camera {
     pub follow: Option<String>,
 }
 
+impl Camera {
+    /// One that stays at `eye_m` and looks at `target_m`.
+    pub fn at(name: &str, eye_m: [f64; 3], target_m: [f64; 3]) -> Self {
+        Self {
+            name: name.into(),
+            eye_m,
+            target_m,
+            fov_deg: default_fov(),
+            follow: None,
+        }
+    }
+}
+
 fn default_fov() -> f32 {
     45.0
 }

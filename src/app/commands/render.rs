@@ -13,9 +13,9 @@ use crate::app::device::EngineArguments;
 use crate::app::progress::Progress;
 use crate::app::values::{density, number, whole};
 use crate::gpu::Gpu;
-use crate::render::{Animation, Picture, PictureTarget, Submission, Sun};
+use crate::render::{Animation, Picture, PictureTarget, Submission, Sun, View, scene_view};
 use crate::run::{Exit, Stage};
-use crate::scene::limits;
+use crate::scene::{Camera, limits};
 
 /// Draw pictures of a scene without a window
 #[derive(Args, Debug)]
@@ -51,6 +51,25 @@ pub struct Arguments {
     /// One of the scene's cameras; by default the first
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
+    /// Look from a place of your own, in metres of the scene, in place of a camera
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        allow_hyphen_values = true,
+        requires = "target",
+        conflicts_with = "camera",
+        value_parser = place
+    )]
+    eye: Option<[f64; 3]>,
+    /// The place that `--eye` looks at
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        allow_hyphen_values = true,
+        requires = "eye",
+        value_parser = place
+    )]
+    target: Option<[f64; 3]>,
     /// Show which tiles are awake
     #[arg(long)]
     overlay: bool,
@@ -176,6 +195,18 @@ fn sun(text: &str) -> Result<Sun, String> {
     })
 }
 
+/// Parses a place such as `0,1.7,-3`.
+fn place(text: &str) -> Result<[f64; 3], String> {
+    let limits::Range { min, max, .. } = limits::PLACE;
+    let numbers: Option<Vec<f64>> = (text.split(','))
+        .map(|number| number.trim().parse().ok())
+        .map(|number| number.filter(|number| (min..=max).contains(number)))
+        .collect();
+    numbers
+        .and_then(|numbers| numbers.try_into().ok())
+        .ok_or_else(|| format!("give three numbers of {min} to {max} metres, such as 0,1.7,-3"))
+}
+
 /// Whether a file name asks for an animation.
 fn is_animation(file: &Path) -> Result<bool, Failure> {
     match file.extension().and_then(|ending| ending.to_str()) {
@@ -250,10 +281,25 @@ impl Shoot<'_> {
             self.progress.set(self.stage.meadow().time_s() / last_s);
         }
         self.stage.engine().check()?;
-        let view = self.stage.camera(self.arguments.camera.as_deref())?;
+        let view = self.view()?;
         let overlay = self.arguments.overlay;
         (self.stage).draw(self.gpu, &view, &self.target.view, overlay)?;
         Ok(self.target.read(self.gpu)?)
+    }
+
+    /// From where this moment is looked at.
+    fn view(&self) -> Result<View, Failure> {
+        let Arguments {
+            camera,
+            eye,
+            target,
+            ..
+        } = self.arguments;
+        let (Some(eye_m), Some(target_m)) = (*eye, *target) else {
+            return Ok(self.stage.camera(camera.as_deref())?);
+        };
+        let free = Camera::at("eye", eye_m, target_m);
+        Ok(scene_view(self.stage.meadow(), Some(&free)))
     }
 
     /// What a file says of its first picture.
@@ -306,6 +352,14 @@ mod tests {
         assert_eq!(sun("5").map(|sun| sun.elevation_deg), Ok(5.0));
         for wrong in ["", "1", "91", "NaN", "10,", "10,400", "10,20,30"] {
             assert!(sun(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn places_are_three_numbers_within_limits() {
+        assert_eq!(place("0,1.7,-3"), Ok([0.0, 1.7, -3.0]));
+        for wrong in ["", "1,2", "1,2,3,4", "a,b,c", "NaN,0,0", "1e300,0,0"] {
+            assert!(place(wrong).is_err(), "{wrong}");
         }
     }
 
