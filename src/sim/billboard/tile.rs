@@ -1,0 +1,280 @@
+//! The billboards of a tile: collide, relax and recover over the tile's slab.
+
+use crate::base::{Real, Vec3};
+use crate::field::{Anchor, WindNow};
+use crate::sim::collide::{self, MAX_MOVABLE, Movable};
+use crate::sim::contact::{Moment, Touch};
+use crate::sim::recover::Fading;
+use crate::sim::relax::{Bodies, Ground, sweeps_for};
+use crate::sim::slab::Slab;
+use crate::terrain::HeightGrid;
+
+use super::batch::{Batch, Lane};
+use super::recover::{Fade, Poses};
+use super::relax::{FINENESS, Outcome, Settings, respond};
+use super::{Quad, Rooted, Weave};
+
+/// Billboards side by side: as many as the few of a tile fill, two vectors of four floats each.
+pub const LANES: usize = 8;
+
+/// What a tile's billboards meet in a sub-step.
+#[derive(Clone, Copy, Debug)]
+pub struct Tile<'a, R> {
+    pub weave: &'a Weave,
+    pub billboards: &'a [Rooted],
+    pub anchor: &'a Anchor,
+    pub ground: &'a HeightGrid,
+    /// Nothing of the ground within reach of the tile is higher, in metres over the anchor's origin.
+    pub ground_top_m: R,
+    pub touches: &'a [Touch<'a, R>],
+    pub wind: &'a WindNow,
+    /// The wind at the start of the sub-step.
+    pub wind_before: &'a WindNow,
+    /// Tick at the end of the sub-step.
+    pub now: u32,
+    pub fading: Fading<R>,
+}
+
+/// A billboard to respond: its place in the tile, and the sweeps it needs, 0 if it is merely held.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Touched {
+    pub place: u32,
+    pub sweeps: u32,
+}
+
+/// What a sub-step did to the billboards of a tile.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Responded {
+    /// Billboards that were pushed or held.
+    pub touched: u64,
+    /// Most rounds of one.
+    pub rounds: u32,
+    /// Largest strain that was left.
+    pub strain: f64,
+    pub reset: u64,
+    pub replaced: u64,
+    pub clamped: bool,
+}
+
+impl<'a, R: Real> Tile<'a, R> {
+    fn quad(&self, place: usize, wind: &WindNow) -> Quad<R> {
+        Quad::in_wind(&self.billboards[place], self.anchor, wind)
+    }
+
+    fn offsets<'s>(&self, slab: &'s Slab<R>, place: usize) -> &'s [Vec3<R>] {
+        let movable = self.weave.grid.movable();
+        &slab.offsets[place * movable..][..movable]
+    }
+
+    /// Poses of all billboards one after the other, in batches: `take` gets the place, the lane and the
+    /// nodes of each.
+    pub fn poses(
+        &self,
+        slab: &Slab<R>,
+        poses: &mut Poses<R, LANES>,
+        mut take: impl FnMut(usize, usize, &Poses<R, LANES>),
+    ) {
+        let places: Vec<usize> = (0..self.billboards.len()).collect();
+        for places in places.chunks(LANES) {
+            let fades: Vec<Fade<R>> = places.iter().map(|&n| self.fade(slab, n)).collect();
+            poses.recover(self.weave, &fades, &self.fading);
+            for (lane, &place) in places.iter().enumerate() {
+                take(place, lane, poses);
+            }
+        }
+    }
+
+    /// How a billboard fades at the end of the sub-step; one that was never touched has no offset left.
+    fn fade<'s>(&self, slab: &'s Slab<R>, place: usize) -> Fade<'s, R> {
+        let touched_at = slab.touched_at[place];
+        Fade {
+            quad: self.quad(place, self.wind),
+            offsets: self.offsets(slab, place),
+            age: if touched_at == 0 {
+                u32::MAX
+            } else {
+                self.now - touched_at
+            },
+        }
+    }
+
+    fn was_touched(&self, slab: &Slab<R>, place: usize) -> bool {
+        let touched_at = slab.touched_at[place];
+        touched_at != 0 && self.now - touched_at == 1
+    }
+
+    /// Movable nodes that bodies meet in this sub-step: as a billboard was left if it was touched in the
+    /// sub-step before, wherever the wind has gone since, else in its pose of now.
+    fn movable_before(
+        &self,
+        slab: &Slab<R>,
+        place: usize,
+        alone: &mut Poses<R, 1>,
+        nodes: &mut [Vec3<R>],
+    ) {
+        let grid = self.weave.grid;
+        if self.was_touched(slab, place) {
+            let quad = self.quad(place, self.wind_before);
+            let offsets = self.offsets(slab, place);
+            for (n, (node, &offset)) in nodes.iter_mut().zip(offsets).enumerate() {
+                *node = quad.node(grid, grid.columns + n) + offset;
+            }
+        } else {
+            self.let_go(slab, place, alone, nodes);
+        }
+    }
+
+    /// Movable nodes in the pose of now.
+    fn let_go(
+        &self,
+        slab: &Slab<R>,
+        place: usize,
+        alone: &mut Poses<R, 1>,
+        nodes: &mut [Vec3<R>],
+    ) {
+        let columns = self.weave.grid.columns;
+        alone.recover(self.weave, &[self.fade(slab, place)], &self.fading);
+        for (n, node) in nodes.iter_mut().enumerate() {
+            *node = alone.nodes.get(columns + n, 0);
+        }
+    }
+
+    fn ground(&self) -> Ground<'a> {
+        Ground {
+            heights: self.ground,
+            anchor: self.anchor,
+        }
+    }
+
+    /// Billboards that a body touches or holds: bounding spheres first, then nodes (O09 section 5.2).
+    pub fn touched(&self, slab: &Slab<R>, found: &mut Vec<Touched>) {
+        found.clear();
+        let mut alone = Poses::new(self.weave);
+        let mut room = [Vec3::ZERO; MAX_MOVABLE];
+        let nodes = &mut room[..self.weave.grid.movable()];
+        for place in 0..self.billboards.len() {
+            let quad = self.quad(place, self.wind);
+            let (root, reach) = (quad.root, quad.reach_m());
+            let sweeps = sweeps_for(self.touches, root, reach).saturating_mul(FINENESS);
+            if sweeps == 0 {
+                continue;
+            }
+            self.movable_before(slab, place, &mut alone, nodes);
+            let before = self.was_touched(slab, place);
+            let ground = self.ground();
+            let pinned = |p: Vec3<R>| {
+                before
+                    && p.y < self.ground_top_m + R::of(collide::PINNED_M)
+                    && p.y - ground.below(p).y <= R::of(collide::PINNED_M)
+            };
+            let movable = Movable { root, nodes };
+            if collide::touched(movable, self.touches, sweeps, reach, pinned) {
+                let place = place as u32;
+                found.push(Touched { place, sweeps });
+            } else if before {
+                let held = collide::held(movable, self.touches, reach);
+                let mut is_in_the_way = || {
+                    let mut room = [Vec3::ZERO; MAX_MOVABLE];
+                    let nodes = &mut room[..self.weave.grid.movable()];
+                    self.let_go(slab, place, &mut alone, nodes);
+                    collide::in_the_way(Movable { root, nodes }, self.touches, reach)
+                };
+                if held || is_in_the_way() {
+                    let place = place as u32;
+                    found.push(Touched { place, sweeps: 0 });
+                }
+            }
+        }
+    }
+
+    /// Pushes the touched billboards out, restores their shape and stores their offsets. `batch` is used
+    /// as room; those that need equally many sweeps share it.
+    pub fn respond(
+        &self,
+        touched: &[Touched],
+        slab: &mut Slab<R>,
+        batch: &mut Batch<'a, R, LANES>,
+        settings: &Settings<R>,
+    ) -> Responded {
+        let mut done = Responded::default();
+        let mut order = touched.to_vec();
+        order.sort_by_key(|touched| touched.sweeps);
+        let mut alone = Poses::new(self.weave);
+        let same_sweeps = order.chunk_by(|a, b| a.sweeps == b.sweeps);
+        for touched in same_sweeps.flat_map(|run| run.chunks(LANES)) {
+            batch.clear();
+            for touched in touched {
+                self.take_in(touched.place as usize, slab, batch, &mut alone, settings);
+            }
+            let outcomes = respond(batch, touched[0].sweeps, settings);
+            for (l, (touched, outcome)) in touched.iter().zip(outcomes).enumerate() {
+                self.put_back(touched.place as usize, l, slab, batch);
+                done.add(&outcome);
+            }
+        }
+        done
+    }
+
+    fn take_in(
+        &self,
+        place: usize,
+        slab: &mut Slab<R>,
+        batch: &mut Batch<'a, R, LANES>,
+        alone: &mut Poses<R, 1>,
+        settings: &Settings<R>,
+    ) {
+        let mut room = [Vec3::ZERO; MAX_MOVABLE];
+        let movable = self.weave.grid.movable();
+        let nodes = &mut room[..movable];
+        self.movable_before(slab, place, alone, nodes);
+        let faces = &mut slab.faces[place * movable..][..movable];
+        // What is back in the wind has no memory of faces, whenever its tile gave its slab back.
+        let age = self.now - slab.touched_at[place];
+        if crate::sim::recover::is_back(age, self.fading.step_over_t.to_f32()) {
+            faces.fill(0);
+        }
+        let quad = self.quad(place, self.wind);
+        let moment = Moment {
+            touches: self.touches,
+            share: R::ZERO,
+            cover_m: settings.cover_m,
+        };
+        let lane = Lane {
+            quad,
+            ground: self.ground(),
+            ground_top_m: self.ground_top_m,
+            bodies: Bodies::at(moment, quad.root, quad.reach_m()),
+        };
+        batch.add(lane, nodes, faces);
+    }
+
+    fn put_back(&self, place: usize, l: usize, slab: &mut Slab<R>, batch: &Batch<'a, R, LANES>) {
+        let grid = self.weave.grid;
+        let first = place * grid.movable();
+        let quad = batch.lanes[l].quad;
+        for n in 0..grid.movable() {
+            let rest = quad.node(grid, grid.columns + n);
+            slab.offsets[first + n] = batch.movable(n, l) - rest;
+            slab.faces[first + n] = batch.faces[n][l];
+        }
+        slab.touched_at[place] = self.now;
+    }
+}
+
+impl Responded {
+    fn add<R: Real>(&mut self, outcome: &Outcome<R>) {
+        let Outcome {
+            rounds,
+            strain,
+            reset,
+            replaced,
+            clamped,
+        } = *outcome;
+        self.touched += 1;
+        self.rounds = self.rounds.max(rounds);
+        self.strain = self.strain.max(strain.to_f64());
+        self.reset += u64::from(reset);
+        self.replaced += u64::from(replaced);
+        self.clamped |= clamped;
+    }
+}
