@@ -4,7 +4,6 @@ use crate::base::{Real, Vec3};
 use crate::sim::relax::{Bodies, Ground};
 use crate::sim::springs::crumpled::{AtRest, CRUMPLED_SHARE, put_back};
 
-use super::grid::Side;
 use super::lanes::Lanes;
 use super::springs::Rest;
 use super::{Quad, Weave};
@@ -63,13 +62,16 @@ impl<'a, R: Real, const L: usize> Batch<'a, R, L> {
     /// Adds a billboard by its movable nodes and their faces. The batch must not be full.
     pub fn add(&mut self, lane: Lane<'a, R>, movable: &[Vec3<R>], faces: &[u32]) {
         let (grid, l) = (self.weave.grid, self.lanes.len());
-        for side in Side::ALL {
-            let length = lane.quad.rest_length(grid, side);
-            self.rest.set(side as usize, l, length);
+        let lengths = lane.quad.rest_lengths(grid);
+        for (side, length) in lengths.into_iter().enumerate() {
+            self.rest.set(side, l, length);
         }
-        for node in 0..grid.columns {
-            self.nodes.set(node, l, lane.quad.node(grid, node));
-        }
+        let nodes = &mut self.nodes;
+        lane.quad.nodes(grid, |node, place| {
+            if node < grid.columns {
+                nodes.set(node, l, place);
+            }
+        });
         for (n, (&node, &face)) in movable.iter().zip(faces).enumerate() {
             self.nodes.set(grid.columns + n, l, node);
             self.faces[n][l] = face;
@@ -130,10 +132,8 @@ impl<'a, R: Real, const L: usize> Batch<'a, R, L> {
             let [nodes, rest, before] = &mut self.line;
             nodes.clear();
             rest.clear();
-            for node in 0..grid.nodes() {
-                nodes.push(self.nodes.get(node, l));
-                rest.push(self.lanes[l].quad.node(grid, node));
-            }
+            nodes.extend((0..grid.nodes()).map(|node| self.nodes.get(node, l)));
+            self.lanes[l].quad.nodes(grid, |_, place| rest.push(place));
             let at_rest = AtRest {
                 nodes: &rest[..],
                 columns: grid.columns,

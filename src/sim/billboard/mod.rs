@@ -13,6 +13,11 @@
 //! many there are: every lane does the same operations in the same order, and one that is done is put
 //! aside while the others go on.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "a lane's number counts in several arrays at once"
+)]
+
 pub mod batch;
 pub mod grid;
 pub mod lanes;

@@ -11,7 +11,7 @@ use crate::base::{Real, Vec3};
 use crate::scene::method::Recovery;
 use crate::sim::recover::{ASIDE, Fading, offset_left};
 
-use super::grid::{SIDES, Side};
+use super::grid::Side;
 use super::lanes::Lanes;
 use super::springs::{Pull, Rest, pass};
 use super::{Quad, Weave};
@@ -35,21 +35,33 @@ pub struct Fade<'a, R> {
 pub struct Poses<R, const L: usize> {
     pub nodes: Lanes<R, L>,
     rest: Rest<R, L>,
+    /// Nodes before their lengths are restored.
+    blended: Lanes<R, L>,
+    pulled: Lanes<R, L>,
 }
 
 impl<R: Real, const L: usize> Poses<R, L> {
     pub fn new(weave: &Weave) -> Self {
+        let lanes = || Lanes::new(weave.grid.nodes());
         Self {
-            nodes: Lanes::new(weave.grid.nodes()),
+            nodes: lanes(),
             rest: Rest::default(),
+            blended: lanes(),
+            pulled: lanes(),
         }
     }
 
     /// The nodes of up to `L` billboards, each in its lane.
-    pub fn recover(&mut self, weave: &Weave, fades: &[Fade<R>], fading: &Fading<R>) {
+    pub fn recover<'f>(
+        &mut self,
+        weave: &Weave,
+        fades: impl IntoIterator<Item = &'f Fade<'f, R>> + Clone,
+        fading: &Fading<R>,
+    ) {
         let mut lengths = false;
         let mut restored = [false; L];
-        for (l, fade) in fades.iter().enumerate().take(L) {
+        let each = || fades.clone().into_iter().enumerate().take(L);
+        for (l, fade) in each() {
             let left = offset_left(fade.age, fading.step_over_t);
             self.blend(weave, l, fade, share_of(left, fading.recovery));
             restored[l] = fade.age > 0 && left > R::ZERO && keeps_lengths(fading.recovery);
@@ -59,73 +71,80 @@ impl<R: Real, const L: usize> Poses<R, L> {
             return;
         }
         let mut quads = [None; L];
-        for (l, fade) in fades.iter().enumerate().take(L) {
+        for (l, fade) in each() {
             quads[l] = Some(fade.quad);
-            for side in 0..SIDES {
-                let length = fade.quad.rest_length(weave.grid, Side::ALL[side]);
+            let lengths = fade.quad.rest_lengths(weave.grid);
+            for (side, length) in lengths.into_iter().enumerate() {
                 self.rest.set(side, l, length);
             }
         }
-        let blended = self.nodes.clone();
-        self.restore_lengths(weave, &blended, &quads);
+        self.blended.copy_all(&self.nodes);
+        let (rest, nodes) = (&self.rest, &mut self.nodes);
+        restore_lengths(weave, rest, &self.blended, nodes, &quads);
         let half = R::of(0.5);
         let pull = Pull {
             shape: half,
             bend: R::ZERO,
         };
         for _ in 0..PASSES {
-            pass(weave, &self.rest, pull, &mut self.nodes);
-            let pulled = self.nodes.clone();
-            self.restore_lengths(weave, &pulled, &quads);
+            pass(weave, rest, pull, nodes);
+            self.pulled.copy_all(nodes);
+            restore_lengths(weave, rest, &self.pulled, nodes, &quads);
         }
         // Those that need none have their own pose.
-        for l in (0..fades.len().min(L)).filter(|&l| !restored[l]) {
-            self.nodes.copy_lane(l, &blended);
+        for l in (0..L).filter(|&l| !restored[l]) {
+            nodes.copy_lane(l, &self.blended);
         }
     }
 
     /// w + t³ d₀.
     fn blend(&mut self, weave: &Weave, l: usize, fade: &Fade<R>, share: R) {
         let grid = weave.grid;
-        for node in 0..grid.nodes() {
-            let mut place = fade.quad.node(grid, node);
-            if node >= grid.columns && share > R::ZERO {
-                place += fade.offsets[node - grid.columns] * share;
-            }
-            self.nodes.set(node, l, place);
-        }
+        let nodes = &mut self.nodes;
+        fade.quad.nodes(grid, |node, place| {
+            let moved = if node >= grid.columns && share > R::ZERO {
+                place + fade.offsets[node - grid.columns] * share
+            } else {
+                place
+            };
+            nodes.set(node, l, moved);
+        });
     }
+}
 
-    /// Gives the segments of every column their rest length, keeping the directions that they have in
-    /// `blended`. One that was turned right over takes the side that the quad faces.
-    fn restore_lengths(
-        &mut self,
-        weave: &Weave,
-        blended: &Lanes<R, L>,
-        quads: &[Option<Quad<R>>; L],
-    ) {
-        let columns = weave.grid.columns;
-        let column_m = self.rest.length[Side::Column as usize];
-        for node in columns..weave.grid.nodes() {
-            let below = node - columns;
-            let mut lost = [false; L];
-            for l in 0..L {
-                let x = blended.x[node][l] - blended.x[below][l];
-                let y = blended.y[node][l] - blended.y[below][l];
-                let z = blended.z[node][l] - blended.z[below][l];
-                let square = x * x + y * y + z * z;
-                let scale = column_m[l] / square.sqrt();
-                self.nodes.x[node][l] = self.nodes.x[below][l] + x * scale;
-                self.nodes.y[node][l] = self.nodes.y[below][l] + y * scale;
-                self.nodes.z[node][l] = self.nodes.z[below][l] + z * scale;
-                lost[l] = !(square > R::of(0.25) * column_m[l] * column_m[l]);
-            }
-            for (l, quad) in quads.iter().enumerate().filter(|&(l, _)| lost[l]) {
-                if let Some(quad) = quad {
-                    let segment = blended.get(node, l) - blended.get(below, l);
-                    let end = self.nodes.get(below, l) + aside(quad, segment, column_m[l]);
-                    self.nodes.set(node, l, end);
-                }
+/// Gives the segments of every column their rest length, keeping the directions that they have in
+/// `blended`. One that was turned right over takes the side that the quad faces.
+fn restore_lengths<R: Real, const L: usize>(
+    weave: &Weave,
+    rest: &Rest<R, L>,
+    blended: &Lanes<R, L>,
+    nodes: &mut Lanes<R, L>,
+    quads: &[Option<Quad<R>>; L],
+) {
+    let columns = weave.grid.columns;
+    let column_m = &rest.length[Side::Column as usize];
+    for node in columns..weave.grid.nodes() {
+        let below = node - columns;
+        let (ax, ay, az) = (&blended.x[below], &blended.y[below], &blended.z[below]);
+        let (bx, by, bz) = (&blended.x[node], &blended.y[node], &blended.z[node]);
+        let (fx, fy, fz) = (nodes.x[below], nodes.y[below], nodes.z[below]);
+        let (tx, ty, tz) = (&mut nodes.x[node], &mut nodes.y[node], &mut nodes.z[node]);
+        let mut over = [R::ZERO; L];
+        for l in 0..L {
+            let (x, y, z) = (bx[l] - ax[l], by[l] - ay[l], bz[l] - az[l]);
+            let square = x * x + y * y + z * z;
+            let scale = column_m[l] / square.sqrt();
+            tx[l] = fx[l] + x * scale;
+            ty[l] = fy[l] + y * scale;
+            tz[l] = fz[l] + z * scale;
+            over[l] = square - R::of(0.25) * column_m[l] * column_m[l];
+        }
+        for (l, quad) in quads.iter().enumerate() {
+            let long = over[l] > R::ZERO;
+            if let Some(quad) = quad.as_ref().filter(|_| !long) {
+                let segment = blended.get(node, l) - blended.get(below, l);
+                let end = nodes.get(below, l) + aside(quad, segment, column_m[l]);
+                nodes.set(node, l, end);
             }
         }
     }

@@ -75,7 +75,7 @@ impl<R: Real> Settings<R> {
     }
 
     /// 2a of one of so many sweeps.
-    fn pull(&self, sweeps: u32) -> Pull<R> {
+    pub fn pull(&self, sweeps: u32) -> Pull<R> {
         let twice_a = |rate_step: f64| 2.0 * step::rational(rate_step / f64::from(sweeps));
         Pull {
             shape: R::of(twice_a(self.rate_step)),
@@ -119,7 +119,13 @@ pub fn respond<R: Real, const L: usize>(
         if settings.literal {
             relax_literally(batch, &pushed, sweeps, settings, &mut outcomes);
         } else {
-            relax(batch, &pushed, settings, settings.pull(sweeps), &mut outcomes);
+            relax(
+                batch,
+                &pushed,
+                settings,
+                settings.pull(sweeps),
+                &mut outcomes,
+            );
         }
     }
     outcomes
@@ -170,10 +176,13 @@ fn relax<R: Real, const L: usize>(
         outcome.reset += reset;
     }
     let mut active = *pushed;
+    // Those that are done while others go on, and are put aside meanwhile.
+    let mut aside = [false; L];
     for l in (0..batch.lanes.len()).filter(|&l| !active[l]) {
         batch.kept.copy_lane(l, &batch.nodes);
+        aside[l] = true;
     }
-    let mut measured = springs::measure(batch.weave, &batch.rest, &batch.nodes);
+    let mut measured = springs::measure(batch.weave, &batch.rest, pull, &batch.nodes);
     for round in 1..=settings.most_rounds {
         let [start, spare] = &mut batch.spare;
         let grew = springs::relax(
@@ -186,7 +195,7 @@ fn relax<R: Real, const L: usize>(
             [start, spare],
         );
         let turned = lay_out(batch, &active);
-        measured = springs::measure(batch.weave, &batch.rest, &batch.nodes);
+        measured = springs::measure(batch.weave, &batch.rest, pull, &batch.nodes);
         let is_last = round == settings.most_rounds;
         for l in 0..batch.lanes.len() {
             if !active[l] {
@@ -199,15 +208,19 @@ fn relax<R: Real, const L: usize>(
             let clear = !turned[l] || !settings.until_clear;
             let done = measured.strain[l] <= settings.strain_limit && clear;
             active[l] = !(is_last || done && round >= settings.fewest_rounds);
-            if !active[l] {
-                batch.kept.copy_lane(l, &batch.nodes);
-            }
         }
         if !active.contains(&true) {
             break;
         }
+        for l in (0..batch.lanes.len()).filter(|&l| !active[l]) {
+            if !std::mem::replace(&mut aside[l], true) {
+                batch.kept.copy_lane(l, &batch.nodes);
+            }
+        }
     }
-    std::mem::swap(&mut batch.nodes, &mut batch.kept);
+    for l in (0..L).filter(|&l| aside[l]) {
+        batch.nodes.copy_lane(l, &batch.kept);
+    }
 }
 
 /// The printed springs (O09 eq. 6-7) after the push, once, behind the bound that keeps them stable.
@@ -227,7 +240,8 @@ fn relax_literally<R: Real, const L: usize>(
         let (nodes, moves) = (&mut batch.kept, &mut batch.spare[0]);
         springs::literal_pass(batch.weave, &batch.rest, twice_a, nodes, moves);
     }
-    let Measured { strain, .. } = springs::measure(batch.weave, &batch.rest, &batch.kept);
+    let Measured { strain, .. } =
+        springs::measure(batch.weave, &batch.rest, settings.pull(sweeps), &batch.kept);
     for l in (0..batch.lanes.len()).filter(|&l| pushed[l]) {
         batch.nodes.copy_lane(l, &batch.kept);
         for node in batch.weave.grid.columns..batch.nodes.len() {
@@ -249,7 +263,11 @@ fn lay_out<R: Real, const L: usize>(batch: &mut Batch<R, L>, active: &[bool; L])
     let columns = batch.weave.grid.columns;
     let mut turned = [false; L];
     for node in columns..batch.nodes.len() {
-        let before = [batch.nodes.x[node], batch.nodes.y[node], batch.nodes.z[node]];
+        let before = [
+            batch.nodes.x[node],
+            batch.nodes.y[node],
+            batch.nodes.z[node],
+        ];
         lay_segment(batch, node);
         for l in (0..batch.lanes.len()).filter(|&l| active[l]) {
             let lane = &batch.lanes[l];
@@ -292,7 +310,8 @@ fn lay_segment<R: Real, const L: usize>(batch: &mut Batch<R, L>, node: usize) {
     }
     // Where two nodes are at one place, or too far apart to measure, the column leans as at rest.
     for l in 0..batch.lanes.len() {
-        if !(square[l] > R::of(POINT_M2) && square[l].is_finite()) {
+        let has_direction = square[l] > R::of(POINT_M2) && square[l].is_finite();
+        if !has_direction {
             let from = Vec3::new(fx[l], fy[l], fz[l]);
             nodes.set(node, l, from + batch.lanes[l].quad.lean * length[l]);
         }

@@ -11,7 +11,7 @@
 use crate::base::{Real, Vec3, vec3};
 use crate::field::{Anchor, WindNow};
 
-use super::grid::Side;
+use super::grid::{ALONG, SIDES, Side};
 use super::{Grid, Rooted};
 
 /// Share of the wind's bend that a straight column takes: the mean of s(2 − s).
@@ -68,12 +68,21 @@ impl<R: Real> Quad<R> {
             .map(|[right, up]| self.vertex(R::of(right), R::of(up)))
     }
 
-    /// A node of the grid; those at the corners are the vertices, bit for bit.
-    pub fn node(&self, grid: Grid, node: usize) -> Vec3<R> {
-        let [column, row] = grid.place(node);
-        // n/n is 1 exactly.
+    /// Gives every node of the grid, row by row; those at the corners are the vertices, bit for bit.
+    pub fn nodes(&self, grid: Grid, mut take: impl FnMut(usize, Vec3<R>)) {
+        // n/n is 1 exactly. The sums are those of `vertex`, each made once.
         let share = |n: usize, of: usize| R::of(n as f64) / R::of((of - 1) as f64);
-        self.vertex(share(column, grid.columns), share(row, grid.rows))
+        let mut on_ground = [Vec3::ZERO; ALONG[1]];
+        for (column, place) in on_ground.iter_mut().enumerate().take(grid.columns) {
+            let right = share(column, grid.columns);
+            *place = self.root + self.across * ((right - R::of(0.5)) * self.width_m);
+        }
+        for row in 0..grid.rows {
+            let up = self.lean * (share(row, grid.rows) * self.height_m);
+            for (column, &place) in on_ground.iter().enumerate().take(grid.columns) {
+                take(row * grid.columns + column, place + up);
+            }
+        }
     }
 
     /// From a node to the next one of its row, and of its column.
@@ -85,10 +94,13 @@ impl<R: Real> Quad<R> {
         ]
     }
 
-    /// Rest length of a spring, in metres.
-    pub fn rest_length(&self, grid: Grid, side: Side) -> R {
-        let ([right, up], [columns, rows]) = (self.steps(grid), side.steps());
-        (right * R::of(f64::from(columns)) + up * R::of(f64::from(rows))).length()
+    /// Rest lengths of the springs by their sides, in metres.
+    pub fn rest_lengths(&self, grid: Grid) -> [R; SIDES] {
+        let [right, up] = self.steps(grid);
+        Side::ALL.map(|side| {
+            let [columns, rows] = side.steps().map(|n| R::of(f64::from(n)));
+            (right * columns + up * rows).length()
+        })
     }
 
     /// The side that the quad shows, a unit vector; some horizontal one for a quad without an area.

@@ -59,12 +59,21 @@ impl<R: Real> Pull<R> {
             self.shape
         }
     }
+
+    /// Weight of a spring in the energy: that of a bend is as much smaller as its pull.
+    fn weight(&self, spring: &Thread) -> R {
+        if spring.side.is_bend() && self.bend < self.shape {
+            self.bend / self.shape
+        } else {
+            R::ONE
+        }
+    }
 }
 
 /// How far billboards are from rest.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured<R, const L: usize> {
-    /// ½Σ(‖l‖ − l₀)², in m².
+    /// ½Σw(‖l‖ − l₀)², in m²; w is 1 for the springs of O09.
     pub energy: [R; L],
     /// Largest relative change of a spring's length but of a bend's.
     pub strain: [R; L],
@@ -73,6 +82,7 @@ pub struct Measured<R, const L: usize> {
 pub fn measure<R: Real, const L: usize>(
     weave: &Weave,
     rest: &Rest<R, L>,
+    pull: Pull<R>,
     nodes: &Lanes<R, L>,
 ) -> Measured<R, L> {
     let mut twice_energy = [R::ZERO; L];
@@ -88,10 +98,11 @@ pub fn measure<R: Real, const L: usize>(
         } else {
             R::ONE
         };
+        let weight = pull.weight(spring);
         for l in 0..L {
             let (x, y, z) = (ax[l] - bx[l], ay[l] - by[l], az[l] - bz[l]);
             let longer = (x * x + y * y + z * z).sqrt() - length[l];
-            twice_energy[l] += longer * longer;
+            twice_energy[l] += longer * longer * weight;
             strain[l] = R::max(strain[l], longer.abs() * inverse[l] * counts);
         }
     }
@@ -185,7 +196,7 @@ pub fn literal_pass<R: Real, const L: usize>(
 fn descend<R: Real, const L: usize>(
     weave: &Weave,
     rest: &Rest<R, L>,
-    share: R,
+    pull: Pull<R>,
     nodes: &mut Lanes<R, L>,
 ) {
     let point = R::of(POINT_M2);
@@ -195,19 +206,24 @@ fn descend<R: Real, const L: usize>(
             let spring = &weave.springs[s];
             let other = spring.ends[usize::from(spring.ends[0] == node)];
             let length = &rest.length[spring.side as usize];
+            let weight = pull.weight(spring);
             for l in 0..L {
                 let x = nodes.x[node][l] - nodes.x[other][l];
                 let y = nodes.y[node][l] - nodes.y[other][l];
                 let z = nodes.z[node][l] - nodes.z[other][l];
                 let square = x * x + y * y + z * z;
                 let longer = R::ONE - length[l] / square.sqrt();
-                let longer = if square > point { longer } else { R::ZERO };
+                let longer = if square > point {
+                    longer * weight
+                } else {
+                    R::ZERO
+                };
                 down[0][l] += x * longer;
                 down[1][l] += y * longer;
                 down[2][l] += z * longer;
             }
         }
-        let by = share / R::of(springs.len() as f64);
+        let by = pull.shape / R::of(springs.len() as f64);
         for l in 0..L {
             nodes.x[node][l] += -(down[0][l] * by);
             nodes.y[node][l] += -(down[1][l] * by);
@@ -232,19 +248,20 @@ pub fn relax<R: Real, const L: usize>(
     for _ in 0..passes {
         pass(weave, rest, pull, nodes);
     }
-    let after = measure(weave, rest, nodes).energy;
+    let after = measure(weave, rest, pull, nodes).energy;
     let mut grew = [false; L];
     for l in 0..L {
-        grew[l] = !(after[l] <= before[l]);
+        let fell = after[l] <= before[l];
+        grew[l] = !fell;
     }
     if !grew.contains(&true) {
         return grew;
     }
     spare.copy_all(start);
     for _ in 0..passes {
-        descend(weave, rest, pull.shape, spare);
+        descend(weave, rest, pull, spare);
     }
-    let descended = measure(weave, rest, spare).energy;
+    let descended = measure(weave, rest, pull, spare).energy;
     for l in (0..L).filter(|&l| grew[l]) {
         let fell = descended[l] <= before[l];
         nodes.copy_lane(l, if fell { spare } else { start });

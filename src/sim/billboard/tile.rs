@@ -4,7 +4,7 @@ use crate::base::{Real, Vec3};
 use crate::field::{Anchor, WindNow};
 use crate::sim::collide::{self, MAX_MOVABLE, Movable};
 use crate::sim::contact::{Moment, Touch};
-use crate::sim::recover::Fading;
+use crate::sim::recover::{Fading, is_back};
 use crate::sim::relax::{Bodies, Ground, sweeps_for};
 use crate::sim::slab::Slab;
 use crate::terrain::HeightGrid;
@@ -74,11 +74,14 @@ impl<'a, R: Real> Tile<'a, R> {
         poses: &mut Poses<R, LANES>,
         mut take: impl FnMut(usize, usize, &Poses<R, LANES>),
     ) {
-        let places: Vec<usize> = (0..self.billboards.len()).collect();
-        for places in places.chunks(LANES) {
-            let fades: Vec<Fade<R>> = places.iter().map(|&n| self.fade(slab, n)).collect();
-            poses.recover(self.weave, &fades, &self.fading);
-            for (lane, &place) in places.iter().enumerate() {
+        let count = self.billboards.len();
+        for first in (0..count).step_by(LANES) {
+            let mut fades = [const { None }; LANES];
+            for (place, fade) in (first..count).zip(&mut fades) {
+                *fade = Some(self.fade(slab, place));
+            }
+            poses.recover(self.weave, fades.iter().flatten(), &self.fading);
+            for (lane, place) in (first..count).take(LANES).enumerate() {
                 take(place, lane, poses);
             }
         }
@@ -103,39 +106,35 @@ impl<'a, R: Real> Tile<'a, R> {
         touched_at != 0 && self.now - touched_at == 1
     }
 
-    /// Movable nodes that bodies meet in this sub-step: as a billboard was left if it was touched in the
-    /// sub-step before, wherever the wind has gone since, else in its pose of now.
-    fn movable_before(
-        &self,
-        slab: &Slab<R>,
-        place: usize,
-        alone: &mut Poses<R, 1>,
-        nodes: &mut [Vec3<R>],
-    ) {
+    /// Nodes that bodies meet in this sub-step, up to [`LANES`] billboards side by side: as each was left if
+    /// it was touched in the sub-step before, wherever the wind has gone since, else in its pose of now.
+    fn before(&self, slab: &Slab<R>, places: &[u32], poses: &mut Poses<R, LANES>) {
         let grid = self.weave.grid;
-        if self.was_touched(slab, place) {
-            let quad = self.quad(place, self.wind_before);
-            let offsets = self.offsets(slab, place);
-            for (n, (node, &offset)) in nodes.iter_mut().zip(offsets).enumerate() {
-                *node = quad.node(grid, grid.columns + n) + offset;
+        let mut fades = [const { None }; LANES];
+        for (fade, &place) in fades.iter_mut().zip(places) {
+            *fade = Some(self.fade(slab, place as usize));
+        }
+        poses.recover(self.weave, fades.iter().flatten(), &self.fading);
+        for (lane, &place) in places.iter().enumerate() {
+            let place = place as usize;
+            if self.was_touched(slab, place) {
+                let offsets = self.offsets(slab, place);
+                let quad = self.quad(place, self.wind_before);
+                quad.nodes(grid, |node, rest| {
+                    if node >= grid.columns {
+                        poses
+                            .nodes
+                            .set(node, lane, rest + offsets[node - grid.columns]);
+                    }
+                });
             }
-        } else {
-            self.let_go(slab, place, alone, nodes);
         }
     }
 
-    /// Movable nodes in the pose of now.
-    fn let_go(
-        &self,
-        slab: &Slab<R>,
-        place: usize,
-        alone: &mut Poses<R, 1>,
-        nodes: &mut [Vec3<R>],
-    ) {
-        let columns = self.weave.grid.columns;
-        alone.recover(self.weave, &[self.fade(slab, place)], &self.fading);
+    /// The movable nodes of a lane, as a list.
+    fn movable(&self, poses: &Poses<R, LANES>, lane: usize, nodes: &mut [Vec3<R>]) {
         for (n, node) in nodes.iter_mut().enumerate() {
-            *node = alone.nodes.get(columns + n, 0);
+            *node = poses.nodes.get(self.weave.grid.columns + n, lane);
         }
     }
 
@@ -147,68 +146,92 @@ impl<'a, R: Real> Tile<'a, R> {
     }
 
     /// Billboards that a body touches or holds: bounding spheres first, then nodes (O09 section 5.2).
-    pub fn touched(&self, slab: &Slab<R>, found: &mut Vec<Touched>) {
+    pub fn touched(&self, slab: &Slab<R>, poses: &mut Poses<R, LANES>, found: &mut Vec<Touched>) {
         found.clear();
-        let mut alone = Poses::new(self.weave);
-        let mut room = [Vec3::ZERO; MAX_MOVABLE];
-        let nodes = &mut room[..self.weave.grid.movable()];
         for place in 0..self.billboards.len() {
-            let quad = self.quad(place, self.wind);
-            let (root, reach) = (quad.root, quad.reach_m());
+            let board = &self.billboards[place];
+            let reach = R::of_f32(board.width_m) * R::of(0.5) + R::of_f32(board.height_m);
+            let root = Vec3::of_f32(board.root_in_anchor);
             let sweeps = sweeps_for(self.touches, root, reach).saturating_mul(FINENESS);
-            if sweeps == 0 {
-                continue;
-            }
-            self.movable_before(slab, place, &mut alone, nodes);
-            let before = self.was_touched(slab, place);
-            let ground = self.ground();
-            let pinned = |p: Vec3<R>| {
-                before
-                    && p.y < self.ground_top_m + R::of(collide::PINNED_M)
-                    && p.y - ground.below(p).y <= R::of(collide::PINNED_M)
-            };
-            let movable = Movable { root, nodes };
-            if collide::touched(movable, self.touches, sweeps, reach, pinned) {
+            if sweeps > 0 {
                 let place = place as u32;
                 found.push(Touched { place, sweeps });
-            } else if before {
-                let held = collide::held(movable, self.touches, reach);
-                let mut is_in_the_way = || {
-                    let mut room = [Vec3::ZERO; MAX_MOVABLE];
-                    let nodes = &mut room[..self.weave.grid.movable()];
-                    self.let_go(slab, place, &mut alone, nodes);
-                    collide::in_the_way(Movable { root, nodes }, self.touches, reach)
-                };
-                if held || is_in_the_way() {
-                    let place = place as u32;
-                    found.push(Touched { place, sweeps: 0 });
-                }
             }
+        }
+        let near = std::mem::take(found);
+        for near in near.chunks(LANES) {
+            let mut places = [0; LANES];
+            for (place, near) in places.iter_mut().zip(near) {
+                *place = near.place;
+            }
+            self.before(slab, &places[..near.len()], poses);
+            let is_touched = near.iter().enumerate();
+            found.extend(is_touched.filter_map(|(lane, near)| self.meets(slab, poses, lane, near)));
         }
     }
 
-    /// Pushes the touched billboards out, restores their shape and stores their offsets. `batch` is used
-    /// as room; those that need equally many sweeps share it.
+    /// Whether a billboard in reach of a body, with its nodes in a lane, is pushed or held by it.
+    fn meets(
+        &self,
+        slab: &Slab<R>,
+        poses: &Poses<R, LANES>,
+        lane: usize,
+        near: &Touched,
+    ) -> Option<Touched> {
+        let place = near.place as usize;
+        let mut room = [Vec3::ZERO; MAX_MOVABLE];
+        let nodes = &mut room[..self.weave.grid.movable()];
+        self.movable(poses, lane, nodes);
+        let before = self.was_touched(slab, place);
+        let ground = self.ground();
+        let pinned = |p: Vec3<R>| {
+            before
+                && p.y < self.ground_top_m + R::of(collide::PINNED_M)
+                && p.y - ground.below(p).y <= R::of(collide::PINNED_M)
+        };
+        let quad = self.quad(place, self.wind);
+        let (root, reach) = (quad.root, quad.reach_m());
+        let movable = Movable { root, nodes };
+        if collide::touched(movable, self.touches, near.sweeps, reach, pinned) {
+            return Some(*near);
+        }
+        let stays = before
+            && (collide::held(movable, self.touches, reach) || {
+                let mut alone: Poses<R, 1> = Poses::new(self.weave);
+                alone.recover(self.weave, [&self.fade(slab, place)], &self.fading);
+                for (n, node) in nodes.iter_mut().enumerate() {
+                    *node = alone.nodes.get(self.weave.grid.columns + n, 0);
+                }
+                collide::in_the_way(Movable { root, nodes }, self.touches, reach)
+            });
+        stays.then_some(Touched { sweeps: 0, ..*near })
+    }
+
+    /// Pushes the touched billboards out, restores their shape and stores their offsets. `batch` and `poses`
+    /// are used as room; those that need equally many sweeps share them.
     pub fn respond(
         &self,
-        touched: &[Touched],
+        touched: &mut [Touched],
         slab: &mut Slab<R>,
-        batch: &mut Batch<'a, R, LANES>,
+        (batch, poses): (&mut Batch<'a, R, LANES>, &mut Poses<R, LANES>),
         settings: &Settings<R>,
     ) -> Responded {
         let mut done = Responded::default();
-        let mut order = touched.to_vec();
-        order.sort_by_key(|touched| touched.sweeps);
-        let mut alone = Poses::new(self.weave);
-        let same_sweeps = order.chunk_by(|a, b| a.sweeps == b.sweeps);
+        touched.sort_by_key(|touched| (touched.sweeps, touched.place));
+        let same_sweeps = touched.chunk_by(|a, b| a.sweeps == b.sweeps);
         for touched in same_sweeps.flat_map(|run| run.chunks(LANES)) {
+            let mut places = [0; LANES];
+            for (place, touched) in places.iter_mut().zip(touched) {
+                *place = touched.place;
+            }
+            self.before(slab, &places[..touched.len()], poses);
             batch.clear();
-            for touched in touched {
-                self.take_in(touched.place as usize, slab, batch, &mut alone, settings);
+            for (lane, touched) in touched.iter().enumerate() {
+                self.take_in(touched.place as usize, slab, batch, (poses, lane), settings);
             }
             let outcomes = respond(batch, touched[0].sweeps, settings);
-            for (l, (touched, outcome)) in touched.iter().zip(outcomes).enumerate() {
-                self.put_back(touched.place as usize, l, slab, batch);
+            for (lane, (touched, outcome)) in touched.iter().zip(outcomes).enumerate() {
+                self.store(touched.place as usize, lane, slab, batch);
                 done.add(&outcome);
             }
         }
@@ -220,17 +243,17 @@ impl<'a, R: Real> Tile<'a, R> {
         place: usize,
         slab: &mut Slab<R>,
         batch: &mut Batch<'a, R, LANES>,
-        alone: &mut Poses<R, 1>,
+        (poses, lane): (&Poses<R, LANES>, usize),
         settings: &Settings<R>,
     ) {
         let mut room = [Vec3::ZERO; MAX_MOVABLE];
         let movable = self.weave.grid.movable();
         let nodes = &mut room[..movable];
-        self.movable_before(slab, place, alone, nodes);
+        self.movable(poses, lane, nodes);
         let faces = &mut slab.faces[place * movable..][..movable];
         // What is back in the wind has no memory of faces, whenever its tile gave its slab back.
         let age = self.now - slab.touched_at[place];
-        if crate::sim::recover::is_back(age, self.fading.step_over_t.to_f32()) {
+        if is_back(age, self.fading.step_over_t.to_f32()) {
             faces.fill(0);
         }
         let quad = self.quad(place, self.wind);
@@ -248,15 +271,16 @@ impl<'a, R: Real> Tile<'a, R> {
         batch.add(lane, nodes, faces);
     }
 
-    fn put_back(&self, place: usize, l: usize, slab: &mut Slab<R>, batch: &Batch<'a, R, LANES>) {
+    fn store(&self, place: usize, lane: usize, slab: &mut Slab<R>, batch: &Batch<'a, R, LANES>) {
         let grid = self.weave.grid;
         let first = place * grid.movable();
-        let quad = batch.lanes[l].quad;
-        for n in 0..grid.movable() {
-            let rest = quad.node(grid, grid.columns + n);
-            slab.offsets[first + n] = batch.movable(n, l) - rest;
-            slab.faces[first + n] = batch.faces[n][l];
-        }
+        batch.lanes[lane].quad.nodes(grid, |node, rest| {
+            if node >= grid.columns {
+                let n = node - grid.columns;
+                slab.offsets[first + n] = batch.nodes.get(node, lane) - rest;
+                slab.faces[first + n] = batch.faces[n][lane];
+            }
+        });
         slab.touched_at[place] = self.now;
     }
 }

@@ -63,11 +63,7 @@ pub fn put_back<R: Real>(
 
 /// Puts back the rows of a billboard that run against the row below them. Returns how many nodes
 /// were moved.
-fn turn_back<R: Real>(
-    rest: &AtRest<R>,
-    nodes: &mut [Vec3<R>],
-    before: &mut Vec<Vec3<R>>,
-) -> u32 {
+fn turn_back<R: Real>(rest: &AtRest<R>, nodes: &mut [Vec3<R>], before: &mut Vec<Vec3<R>>) -> u32 {
     let columns = rest.columns;
     if columns < 2 {
         return 0;
