@@ -24,6 +24,7 @@ use super::springs::Pull;
 use super::*;
 
 mod contacts;
+mod neighbours;
 mod shapes;
 mod speed;
 

@@ -50,11 +50,12 @@ impl<'a, R: Real> Bodies<'a, R> {
         self.posed.is_empty()
     }
 
-    /// True where a place is in the ball around a part in reach.
+    /// False where a place is outside every part in reach.
     pub fn may_hold(&self, node: Vec3<R>) -> bool {
         let mut posed = self.posed.iter();
         posed.any(|(touch, pose)| {
-            (node - pose.place).length_squared() <= touch.radius_m * touch.radius_m
+            let near = (node - pose.place).length_squared() <= touch.radius_m * touch.radius_m;
+            near && !touch.is_clear_of(pose, node)
         })
     }
 

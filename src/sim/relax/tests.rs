@@ -6,6 +6,7 @@ use crate::base::vec3;
 use crate::field::{Field, MAX_NODES};
 use crate::scene::{Grass, Solver};
 use crate::sim::springs;
+use crate::terrain::HeightGrid;
 
 const SEGMENTS: usize = 8;
 /// Length of a segment, and the height of the root over a ground that no blade can reach, in metres.
