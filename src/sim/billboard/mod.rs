@@ -31,6 +31,8 @@ pub use batch::Batch;
 pub use grid::{Grid, Weave};
 pub use shape::Quad;
 
+use crate::base::{Real, Vec3};
+
 /// What the kernel needs to know of a billboard.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rooted {
@@ -45,6 +47,17 @@ pub struct Rooted {
     pub flexibility: f32,
     /// Phase of its own trembling.
     pub flutter_turns: f32,
+}
+
+impl Rooted {
+    pub fn root<R: Real>(&self) -> Vec3<R> {
+        Vec3::of_f32(self.root_in_anchor)
+    }
+
+    /// Radius of a ball about the root that holds the billboard in any pose of its lengths, in metres.
+    pub fn reach_m<R: Real>(&self) -> R {
+        R::of_f32(self.width_m) * R::of(0.5) + R::of_f32(self.height_m)
+    }
 }
 
 #[cfg(test)]

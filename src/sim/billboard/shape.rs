@@ -108,9 +108,4 @@ impl<R: Real> Quad<R> {
         let level = vec3(-self.across.z, R::ZERO, self.across.x);
         self.across.cross(self.lean).unit_or(level)
     }
-
-    /// Radius of a ball about the root that holds the billboard in any pose of its lengths, in metres.
-    pub fn reach_m(&self) -> R {
-        self.width_m * R::of(0.5) + self.height_m
-    }
 }

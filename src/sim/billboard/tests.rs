@@ -107,7 +107,7 @@ fn shaken<'a, R: Real, const L: usize>(
                 anchor: &ANCHOR,
             },
             ground_top_m: R::of(-1e3),
-            bodies: crate::sim::relax::Bodies::at(moment, quad.root, quad.reach_m()),
+            bodies: crate::sim::relax::Bodies::at(moment, quad.root, billboard.reach_m()),
         };
         batch.add(lane, &movable, &vec![0; grid.movable()]);
     }

@@ -112,7 +112,15 @@ impl<'a, R: Real> Tile<'a, R> {
         let grid = self.weave.grid;
         let mut fades = [const { None }; LANES];
         for (fade, &place) in fades.iter_mut().zip(places) {
-            *fade = Some(self.fade(slab, place as usize));
+            let place = place as usize;
+            let now = self.fade(slab, place);
+            // Nothing is restored of one that was touched: its pose is taken as it was left.
+            let age = if self.was_touched(slab, place) {
+                0
+            } else {
+                now.age
+            };
+            *fade = Some(Fade { age, ..now });
         }
         poses.recover(self.weave, fades.iter().flatten(), &self.fading);
         for (lane, &place) in places.iter().enumerate() {
@@ -150,8 +158,7 @@ impl<'a, R: Real> Tile<'a, R> {
         found.clear();
         for place in 0..self.billboards.len() {
             let board = &self.billboards[place];
-            let reach = R::of_f32(board.width_m) * R::of(0.5) + R::of_f32(board.height_m);
-            let root = Vec3::of_f32(board.root_in_anchor);
+            let (root, reach) = (board.root(), board.reach_m());
             let sweeps = sweeps_for(self.touches, root, reach).saturating_mul(FINENESS);
             if sweeps > 0 {
                 let place = place as u32;
@@ -189,8 +196,8 @@ impl<'a, R: Real> Tile<'a, R> {
                 && p.y < self.ground_top_m + R::of(collide::PINNED_M)
                 && p.y - ground.below(p).y <= R::of(collide::PINNED_M)
         };
-        let quad = self.quad(place, self.wind);
-        let (root, reach) = (quad.root, quad.reach_m());
+        let board = &self.billboards[place];
+        let (root, reach) = (board.root(), board.reach_m());
         let movable = Movable { root, nodes };
         if collide::touched(movable, self.touches, near.sweeps, reach, pinned) {
             return Some(*near);
@@ -256,6 +263,7 @@ impl<'a, R: Real> Tile<'a, R> {
         if is_back(age, self.fading.step_over_t.to_f32()) {
             faces.fill(0);
         }
+        let board = &self.billboards[place];
         let quad = self.quad(place, self.wind);
         let moment = Moment {
             touches: self.touches,
@@ -266,7 +274,7 @@ impl<'a, R: Real> Tile<'a, R> {
             quad,
             ground: self.ground(),
             ground_top_m: self.ground_top_m,
-            bodies: Bodies::at(moment, quad.root, quad.reach_m()),
+            bodies: Bodies::at(moment, quad.root, board.reach_m()),
         };
         batch.add(lane, nodes, faces);
     }

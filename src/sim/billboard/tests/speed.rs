@@ -154,13 +154,13 @@ fn sub_step(load: &mut Load, now: u32, settings: &Settings<f32>, name: &str) -> 
         .par_iter_mut()
         .zip(&mut found)
         .with_min_len(64)
-        .map(|((boards, slab), found)| {
-            let (mut batch, mut poses) = (Batch::new(weave), Poses::new(weave));
-            let room = (&mut batch, &mut poses);
-            load_ref
-                .tile(boards, now)
-                .respond(found, slab, room, settings)
-        })
+        .map_init(
+            || (Batch::new(weave), Poses::new(weave)),
+            |(batch, poses), ((boards, slab), found)| {
+                let tile = load_ref.tile(boards, now);
+                tile.respond(found, slab, (batch, poses), settings)
+            },
+        )
         .collect();
     load.tiles = tiles;
     let relax_ms = ms(start);
