@@ -85,7 +85,19 @@ impl WindNow {
 
     /// Bend of a plant's tip along x and z.
     pub fn bend<R: Real>(&self, anchor: &Anchor, plant: &Plant) -> [R; 2] {
-        let root = plant.root_in_anchor.map(R::of_f32);
+        let root = plant.root_in_anchor;
+        self.bend_at(anchor, root, plant.flexibility, plant.flutter_turns)
+    }
+
+    /// Bend of the tip of whatever stands at a place of an anchor, along x and z.
+    pub fn bend_at<R: Real>(
+        &self,
+        anchor: &Anchor,
+        root_in_anchor: [f32; 3],
+        flexibility: f32,
+        flutter_turns: f32,
+    ) -> [R; 2] {
+        let root = root_in_anchor.map(R::of_f32);
         let mut gust = R::ZERO;
         for wave in &self.waves {
             let phase = wave
@@ -97,10 +109,10 @@ impl WindNow {
             gust += R::of_f32(wave.share) * sin_turns(turns);
         }
         let along = R::of_f32(self.strength) + R::of_f32(self.gust) * gust;
-        let trembling = R::of_f32(unit(self.flutter_phase)) + R::of_f32(plant.flutter_turns);
+        let trembling = R::of_f32(unit(self.flutter_phase)) + R::of_f32(flutter_turns);
         let across = R::of_f32(self.flutter) * sin_turns(trembling);
         let [dx, dz] = self.direction.map(R::of_f32);
-        let flexibility = R::of_f32(plant.flexibility);
+        let flexibility = R::of_f32(flexibility);
         [
             (dx * along - dz * across) * flexibility,
             (dz * along + dx * across) * flexibility,

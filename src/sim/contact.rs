@@ -129,6 +129,19 @@ impl<'a, R: Real> Touch<'a, R> {
         }
     }
 
+    /// True where a vertex is certainly outside the part at `pose`, so that it has no way out: far
+    /// cheaper to know than the way. A depth cube of a convex part reaches beyond it by less than a
+    /// texel.
+    pub fn is_clear_of(&self, pose: &Pose<R>, vertex: Vec3<R>) -> bool {
+        let outside_m = match self.collider {
+            _ if matches!(self.grown, Solid::Union(_) | Solid::Mesh { .. }) => return false,
+            ColliderOf::Voxels(_) => return false,
+            ColliderOf::Analytic(_) => R::ZERO,
+            ColliderOf::Cube(cube) => R::of_f32(cube.texel_m()),
+        };
+        self.grown.depth(pose.inverse_point(vertex)) <= -outside_m
+    }
+
     /// True where a vertex is inside the part at the end of the sub-step or so close to it that a
     /// plant the body pushed before is still held.
     pub fn nearly_holds(&self, vertex: Vec3<R>) -> bool {

@@ -14,13 +14,13 @@ use crate::field::{Field, Nodes, Plant, wind_pose};
 use crate::scene::Solver;
 use crate::scene::method::Recovery;
 
-use super::collide;
+use super::collide::{self, Movable};
 use super::contact::Touch;
 use super::depth_cube::{COVER_MARGIN_M, DepthCube};
 use super::fault::Fault;
 use super::meadow::Meadow;
 use super::recover::{Fading, fade_literally, is_back, recovering_pose};
-use super::relax::{self, Place, RelaxSettings};
+use super::relax::{self, Ground, Place, RelaxSettings};
 use super::slab::Slab;
 use super::solid::Solid;
 use super::state_hash::StateHash;
@@ -353,12 +353,18 @@ fn touched_plants<R: Real>(
                 && p.y - ground_in_anchor(&field.ground, &tile.anchor, p.x, p.z)
                     <= R::of(collide::PINNED_M)
         };
-        if collide::touched(&pose, segments, &touches, sweeps, reach, pinned) {
+        if collide::touched(
+            Movable::of_blade(&pose, segments),
+            &touches,
+            sweeps,
+            reach,
+            pinned,
+        ) {
             found.push(Touched { place, sweeps });
         } else if before {
             let let_go = || poses(field, &meadow.work, &fading, tile, &plant, slab, place).1;
-            if collide::held(&pose, segments, &touches, reach)
-                || collide::in_the_way(&let_go(), segments, &touches, reach)
+            if collide::held(Movable::of_blade(&pose, segments), &touches, reach)
+                || collide::in_the_way(Movable::of_blade(&let_go(), segments), &touches, reach)
             {
                 found.push(Touched { place, sweeps: 0 });
             }
@@ -388,8 +394,10 @@ fn respond<R: Real>(
             poses_before(field, &meadow.work, &fading, tile, &plant, slab, place);
         let first = place as usize * segments;
         let surroundings = Place {
-            ground: &field.ground,
-            anchor: &tile.anchor,
+            ground: Ground {
+                heights: &field.ground,
+                anchor: &tile.anchor,
+            },
             wind: &wind,
             segments,
             length: segment_length(&plant, segments),

@@ -135,20 +135,28 @@ impl DepthCube {
 
     /// True where a point is farther behind all six faces than `depth_m`.
     pub fn is_deeper<R: Real>(&self, p: Vec3<R>, depth_m: R) -> bool {
+        self.bounds_hold(p)
+            && (0..6).all(|face| self.sample(p, face).is_some_and(|s| s.behind > depth_m))
+    }
+
+    fn bounds_hold<R: Real>(&self, p: Vec3<R>) -> bool {
         (0..3).all(|a| {
             axis(p, a) > R::of_f32(axis(self.low, a)) && axis(p, a) < R::of_f32(axis(self.high, a))
-        }) && (0..6).all(|face| self.sample(p, face).is_some_and(|s| s.behind > depth_m))
+        })
     }
 
     /// The way out for a point inside, or `None` outside. `kept` is the face of the last sub-step
     /// or [`NO_FACE`](super::solid::NO_FACE).
     pub fn exit<R: Real>(&self, p: Vec3<R>, kept: u32, reach: &Reach<R>) -> Option<Exit<R>> {
-        if !self.is_deeper(p, R::ZERO) {
+        if !self.bounds_hold(p) {
             return None;
         }
+        let mut surfaces = [const { None }; 6];
+        for (surface, face) in surfaces.iter_mut().zip(0..) {
+            *surface = Some(self.sample(p, face).filter(|s| s.behind > R::ZERO)?);
+        }
         let mut choice = Choice::new(p, kept, reach);
-        for face in 0..6 {
-            let surface = self.sample(p, face)?;
+        for (surface, face) in surfaces.into_iter().flatten().zip(0..) {
             let normal = surface.normal;
             let depth = match (self.push, self.sampling) {
                 (Push::Literal, _) => surface.along_axis,

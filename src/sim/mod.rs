@@ -1,5 +1,6 @@
 //! The passes as Rust, generic over the float, and the tick that runs them.
 
+pub mod billboard;
 pub mod checkpoint;
 pub mod collide;
 pub mod contact;

@@ -118,7 +118,7 @@ pub fn relax<R: Real>(
     let mut done = Relaxed {
         step: 0.0,
         clamped: false,
-        reset: crumpled::put_back(network, nodes, scratch),
+        reset: crumpled::put_back(&network.at_rest(), nodes, scratch),
         replaced: 0,
     };
     match method {

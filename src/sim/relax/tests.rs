@@ -6,6 +6,7 @@ use crate::base::vec3;
 use crate::field::{Field, MAX_NODES};
 use crate::scene::{Grass, Solver};
 use crate::sim::springs;
+use crate::terrain::HeightGrid;
 
 const SEGMENTS: usize = 8;
 /// Length of a segment, and the height of the root over a ground that no blade can reach, in metres.
@@ -48,14 +49,12 @@ fn extension<R: Real>(nodes: &Nodes<R>, wind: &Nodes<R>) -> f64 {
 
 /// One sweep without contacts: bend springs, then the fewest rounds of lengths and ground.
 fn sweep<R: Real>(nodes: &mut Nodes<R>, place: &Place<R>, rate: f64) {
-    let nothing = Bodies {
-        moment: Moment {
-            touches: &[],
-            share: R::ONE,
-            cover_m: R::ZERO,
-        },
-        posed: Vec::new(),
+    let moment = Moment {
+        touches: &[],
+        share: R::ONE,
+        cover_m: R::ZERO,
     };
+    let nothing = Bodies::at(moment, Vec3::ZERO, R::ONE);
     bend_springs(nodes, place, R::of(rate), Planted::NONE);
     for _ in 0..Solver::default().rounds[0] {
         lay_out(nodes, &mut [0; SEGMENTS], &nothing, place);
@@ -79,8 +78,10 @@ fn never_gains_energy<R: Real>(epsilon: f64) {
             let wind = bent::<R>(seed + 1000, 0.15);
             let mut nodes = bent::<R>(seed, most_rad);
             let place = Place {
-                ground: &field.ground,
-                anchor: &anchor,
+                ground: Ground {
+                    heights: &field.ground,
+                    anchor: &anchor,
+                },
                 wind: &wind,
                 segments: SEGMENTS,
                 length: R::of(LENGTH_M),
@@ -124,8 +125,10 @@ fn springs_of_the_default_rate_straighten_a_bent_blade() {
         let wind = bent::<f64>(seed + 1000, 0.15);
         let mut nodes = bent::<f64>(seed, 0.3);
         let place = Place {
-            ground: &field.ground,
-            anchor: &anchor,
+            ground: Ground {
+                heights: &field.ground,
+                anchor: &anchor,
+            },
             wind: &wind,
             segments: SEGMENTS,
             length: LENGTH_M,

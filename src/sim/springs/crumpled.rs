@@ -14,8 +14,6 @@
 
 use crate::base::{Real, Vec3};
 
-use super::network::Network;
-
 /// Share of its rest length below which an edge is crumpled.
 pub const CRUMPLED_SHARE: f64 = 0.01;
 
@@ -25,45 +23,48 @@ pub fn is_lost<R: Real>(across: Vec3<R>, rest_length: R) -> bool {
     !length.is_finite() || length < rest_length * R::of(CRUMPLED_SHARE)
 }
 
+/// What is known of a network at rest.
+#[derive(Clone, Copy, Debug)]
+pub struct AtRest<'a, R> {
+    pub nodes: &'a [Vec3<R>],
+    /// Nodes in a row of a billboard; 0 for chains.
+    pub columns: usize,
+    /// Nodes at the front that are pinned.
+    pub pinned: usize,
+    /// Earlier nodes that a node has a spring to.
+    pub earlier: &'a [Vec<usize>],
+}
+
 /// Puts back what is crumpled, then what is inverted. Returns how many nodes were moved. `before` is room for a vector
 /// per node.
-pub(super) fn put_back<R: Real>(
-    network: &Network<R>,
+pub fn put_back<R: Real>(
+    rest: &AtRest<R>,
     nodes: &mut [Vec3<R>],
     before: &mut Vec<Vec3<R>>,
 ) -> u32 {
     before.clear();
     before.extend_from_slice(nodes);
     let mut moved = 0;
-    for (later, springs) in network.of_node.iter().enumerate() {
-        if network.pinned[later] {
-            continue;
-        }
-        let lost = springs.iter().map(|&s| &network.springs[s]).find(|spring| {
-            let [earlier, end] = spring.ends;
+    for later in rest.pinned..nodes.len() {
+        let lost = rest.earlier[later].iter().copied().find(|&earlier| {
+            let rest_length = (rest.nodes[earlier] - rest.nodes[later]).length();
             // As the nodes were, since a node put back is no longer near the next one; and as
             // they are, since it may now be out of reach of it.
-            end == later
-                && (is_lost(before[earlier] - before[end], spring.rest_length)
-                    || !(nodes[earlier] - nodes[end]).length().is_finite())
+            is_lost(before[earlier] - before[later], rest_length)
+                || !(nodes[earlier] - nodes[later]).length().is_finite()
         });
-        if let Some(spring) = lost {
-            let offset = network.rest[later] - network.rest[spring.ends[0]];
-            nodes[later] = nodes[spring.ends[0]] + offset;
+        if let Some(earlier) = lost {
+            nodes[later] = nodes[earlier] + (rest.nodes[later] - rest.nodes[earlier]);
             moved += 1;
         }
     }
-    moved + turn_back(network, nodes, before)
+    moved + turn_back(rest, nodes, before)
 }
 
 /// Puts back the rows of a billboard that run against the row below them. Returns how many nodes
 /// were moved.
-fn turn_back<R: Real>(
-    network: &Network<R>,
-    nodes: &mut [Vec3<R>],
-    before: &mut Vec<Vec3<R>>,
-) -> u32 {
-    let columns = network.columns;
+fn turn_back<R: Real>(rest: &AtRest<R>, nodes: &mut [Vec3<R>], before: &mut Vec<Vec3<R>>) -> u32 {
+    let columns = rest.columns;
     if columns < 2 {
         return 0;
     }
@@ -81,7 +82,7 @@ fn turn_back<R: Real>(
             let left = column > 0 && against(nodes, here - 1);
             let right = column + 1 < columns && against(nodes, here);
             if left || right {
-                let offset = network.rest[here] - network.rest[here - columns];
+                let offset = rest.nodes[here] - rest.nodes[here - columns];
                 nodes[here] = nodes[here - columns] + offset;
                 moved += 1;
             }

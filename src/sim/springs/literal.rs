@@ -61,14 +61,23 @@ pub(super) fn largest_eigenvalue<R: Real>(nodes: usize, springs: &[Spring<R>]) -
 /// λmax that holds for a blade of so many segments in any pose: that of a straight one with
 /// structural and bend springs and a pinned root.
 pub fn chain_eigenvalue(segments: usize) -> f64 {
-    let terms: Vec<_> = blade_pairs(segments)
+    any_pose_eigenvalue(segments + 1, blade_pairs(segments), |end| end == 0)
+}
+
+/// λmax that holds for a network in any pose: as if all its springs lay along one line.
+pub fn any_pose_eigenvalue(
+    nodes: usize,
+    pairs: impl Iterator<Item = [usize; 2]>,
+    pinned: impl Fn(usize) -> bool,
+) -> f64 {
+    let terms: Vec<_> = pairs
         .map(|ends| Term {
             ends,
-            weights: shares(ends.map(|end| end == 0)).map(|share| share / SHARE_FREE),
+            weights: shares(ends.map(&pinned)).map(|share| share / SHARE_FREE),
             direction: Vec3::UP,
         })
         .collect();
-    power_iteration(segments + 1, &terms)
+    power_iteration(nodes, &terms)
 }
 
 /// A spring in the stiffness matrix.

@@ -7,6 +7,7 @@
 
 use crate::base::{Real, Vec3};
 
+use super::crumpled::AtRest;
 use super::{literal, shares};
 
 /// A spring between two nodes of which at least one is movable.
@@ -34,6 +35,8 @@ pub struct Network<R> {
     pub largest_eigenvalue: f64,
     /// Springs of each node, as indices into `springs`.
     pub(super) of_node: Vec<Vec<usize>>,
+    /// Earlier nodes that each node has a spring to.
+    earlier: Vec<Vec<usize>>,
     /// The nodes are a blade's centre line, whose segments keep their lengths exactly.
     pub(super) is_blade: bool,
     /// Nodes in a row of a billboard; 0 for chains.
@@ -45,6 +48,47 @@ pub fn blade_pairs(segments: usize) -> impl Iterator<Item = [usize; 2]> + Clone 
     let structural = (0..segments).map(|j| [j, j + 1]);
     let bend = (0..segments.saturating_sub(1)).map(|j| [j, j + 2]);
     structural.chain(bend)
+}
+
+/// Pairs of nodes of a billboard's springs: its rows and columns, both diagonals of its cells and, with
+/// `bend`, every second node of rows and columns. The earlier node comes first.
+pub fn billboard_pairs(columns: usize, rows: usize, bend: bool) -> Vec<[usize; 2]> {
+    let at = |column: usize, row: usize| row * columns + column;
+    let reach = if bend { 2 } else { 1 };
+    let mut pairs = Vec::new();
+    for row in 0..rows {
+        for column in 0..columns {
+            let here = at(column, row);
+            for far in 1..=reach {
+                if column + far < columns {
+                    pairs.push([here, at(column + far, row)]);
+                }
+                if row + far < rows {
+                    pairs.push([here, at(column, row + far)]);
+                }
+            }
+            if column + 1 < columns && row + 1 < rows {
+                pairs.push([here, at(column + 1, row + 1)]);
+                pairs.push([at(column + 1, row), at(column, row + 1)]);
+            }
+        }
+    }
+    pairs
+}
+
+/// Leaves out pairs of pinned nodes and sorts the others by their later node.
+pub fn in_order(pairs: &mut Vec<[usize; 2]>, pinned: impl Fn(usize) -> bool) {
+    pairs.retain(|pair| !(pinned(pair[0]) && pinned(pair[1])));
+    pairs.sort_by_key(|pair| (pair[1], pair[0]));
+}
+
+/// Earlier nodes that each node is paired with, of pairs in order.
+pub fn earlier_nodes(nodes: usize, pairs: &[[usize; 2]]) -> Vec<Vec<usize>> {
+    let mut earlier = vec![Vec::new(); nodes];
+    for &[first, second] in pairs {
+        earlier[second].push(first);
+    }
+    earlier
 }
 
 impl<R: Real> Network<R> {
@@ -71,26 +115,7 @@ impl<R: Real> Network<R> {
     pub fn billboard(rest: &[Vec3<R>], columns: usize, bend: bool) -> Self {
         let columns = columns.max(1);
         let rows = rest.len() / columns;
-        let at = |column: usize, row: usize| row * columns + column;
-        let reach = if bend { 2 } else { 1 };
-        let mut pairs = Vec::new();
-        for row in 0..rows {
-            for column in 0..columns {
-                let here = at(column, row);
-                for far in 1..=reach {
-                    if column + far < columns {
-                        pairs.push([here, at(column + far, row)]);
-                    }
-                    if row + far < rows {
-                        pairs.push([here, at(column, row + far)]);
-                    }
-                }
-                if column + 1 < columns && row + 1 < rows {
-                    pairs.push([here, at(column + 1, row + 1)]);
-                    pairs.push([at(column + 1, row), at(column, row + 1)]);
-                }
-            }
-        }
+        let pairs = billboard_pairs(columns, rows, bend);
         let nodes = rest[..rows * columns].to_vec();
         let pinned = (0..nodes.len()).map(|j| j < columns).collect();
         Self {
@@ -100,9 +125,11 @@ impl<R: Real> Network<R> {
     }
 
     fn new(rest: Vec<Vec3<R>>, pinned: Vec<bool>, pairs: impl Iterator<Item = [usize; 2]>) -> Self {
-        let movable = |pair: &[usize; 2]| !(pinned[pair[0]] && pinned[pair[1]]);
-        let mut springs: Vec<Spring<R>> = pairs
-            .filter(movable)
+        let mut pairs: Vec<_> = pairs.collect();
+        in_order(&mut pairs, |node| pinned[node]);
+        let earlier = earlier_nodes(rest.len(), &pairs);
+        let springs: Vec<Spring<R>> = pairs
+            .into_iter()
             .map(|ends| {
                 let across = rest[ends[0]] - rest[ends[1]];
                 Spring {
@@ -113,7 +140,6 @@ impl<R: Real> Network<R> {
                 }
             })
             .collect();
-        springs.sort_by_key(|spring| (spring.ends[1], spring.ends[0]));
         let mut of_node = vec![Vec::new(); rest.len()];
         for (index, spring) in springs.iter().enumerate() {
             for end in spring.ends {
@@ -126,8 +152,19 @@ impl<R: Real> Network<R> {
             pinned,
             springs,
             of_node,
+            earlier,
             is_blade: false,
             columns: 0,
+        }
+    }
+
+    /// What puts crumpled nodes back.
+    pub(super) fn at_rest(&self) -> AtRest<'_, R> {
+        AtRest {
+            nodes: &self.rest,
+            columns: self.columns,
+            pinned: self.pinned.iter().take_while(|&&pinned| pinned).count(),
+            earlier: &self.earlier,
         }
     }
 
