@@ -242,22 +242,24 @@ fn top_of_grass(place: vec2f, base: vec3f, pixel_m: f32, long_pixel_m: f32) -> S
     return Surface(mix(rgb, straw, 0.2), 0.05 * clumps + 0.02 * tufts, GRASS_TOP_OPEN);
 }
 
-// Stones side by side.
-fn gravel_floor(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
+// Stones side by side. Their relief ends before four pixels that share a slope are as long as a stone.
+fn gravel_floor(place: vec2f, base: vec3f, pixel_m: f32, long_pixel_m: f32) -> Surface {
     let stones = mix(0.5, value_noise(place * 45.0), detail_weight(0.022, pixel_m));
     let grains = mix(0.5, value_noise(place * 140.0 + 9.0), detail_weight(0.008, pixel_m));
     let lumps = mix(0.5, cloudy_noise(place * 5.0 + 2.0), detail_weight(0.2, pixel_m));
     let tone = 0.3 + 0.75 * stones + 0.35 * grains + 0.2 * lumps;
-    return Surface(base * tone, 0.012 * stones, 0.72);
+    let relief_m = 0.005 * stones * detail_weight(0.022, long_pixel_m);
+    return Surface(base * tone, relief_m, 0.72);
 }
 
-// Dead leaves over each other.
-fn litter_floor(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
+// Dead leaves over each other, with relief as that of stones.
+fn litter_floor(place: vec2f, base: vec3f, pixel_m: f32, long_pixel_m: f32) -> Surface {
     let leaves = mix(0.5, value_noise(place * vec2f(19.0, 24.0)), detail_weight(0.05, pixel_m));
     let edges = mix(0.5, value_noise(place * 60.0 + 3.0), detail_weight(0.016, pixel_m));
     let pale = mix(0.5, cloudy_noise(place * 7.0 + 6.0), detail_weight(0.14, pixel_m));
     let rgb = base * mix(vec3f(0.85, 0.85, 0.85), vec3f(1.25, 1.1, 0.9), pale);
-    return Surface(rgb * (0.45 + 0.6 * leaves + 0.3 * edges), 0.012 * leaves, 0.72);
+    let relief_m = 0.012 * leaves * detail_weight(0.05, long_pixel_m);
+    return Surface(rgb * (0.45 + 0.6 * leaves + 0.3 * edges), relief_m, 0.72);
 }
 
 fn bare_floor(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
@@ -330,10 +332,12 @@ fn blended_surface(
         sum = add_surface(sum, grass, shares[LOOK_GRASS]);
     }
     if shares[LOOK_GRAVEL] > 0.004 {
-        sum = add_surface(sum, gravel_floor(place, base, pixel_m), shares[LOOK_GRAVEL]);
+        let gravel = gravel_floor(place, base, pixel_m, long_pixel_m);
+        sum = add_surface(sum, gravel, shares[LOOK_GRAVEL]);
     }
     if shares[LOOK_LITTER] > 0.004 {
-        sum = add_surface(sum, litter_floor(place, base, pixel_m), shares[LOOK_LITTER]);
+        let litter = litter_floor(place, base, pixel_m, long_pixel_m);
+        sum = add_surface(sum, litter, shares[LOOK_LITTER]);
     }
     if shares[LOOK_BARE] > 0.004 {
         sum = add_surface(sum, bare_floor(place, base, pixel_m), shares[LOOK_BARE]);
