@@ -133,9 +133,9 @@ pub fn pass<R: Real, const L: usize>(
             let longer = R::ONE - length[l] / square.sqrt();
             let longer = if square > point { longer } else { R::ZERO };
             let (a_by, b_by) = (longer * from_a, longer * from_b);
-            ax[l] = ax[l] - x * a_by;
-            ay[l] = ay[l] - y * a_by;
-            az[l] = az[l] - z * a_by;
+            ax[l] -= x * a_by;
+            ay[l] -= y * a_by;
+            az[l] -= z * a_by;
             bx[l] += x * b_by;
             by[l] += y * b_by;
             bz[l] += z * b_by;
