@@ -113,7 +113,7 @@ fn maps_of_billboards_that_cannot_be_used() {
 /// O09 section 7: 60,000 of them.
 #[test]
 fn the_papers_scene_has_its_billboards() {
-    let source = include_str!("../scenes/waiting/meadow_60k.ron");
+    let source = include_str!("../scenes/meadow_60k.ron");
     let loaded = parse_scene_with("meadow_60k", source, &ASSETS).expect("a valid scene");
     let meadow = Meadow::new(loaded.scene, &loaded.assets).expect("within budget");
     let billboards = meadow.field.billboards.expect("the scene has some");

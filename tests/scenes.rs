@@ -65,6 +65,16 @@ fn main() {
             run_file(&file, &on_cpu)
         }));
         let name = format!("gpu::{name}");
+        let has_billboards = load_scene(&scene, &[]).is_ok_and(|s| s.scene.billboards.is_some());
+        if has_billboards {
+            let reason = "the gpu engine has no kernels for billboards yet";
+            trials.push(
+                Trial::test(name, || Ok(()))
+                    .with_kind(reason)
+                    .with_ignored_flag(true),
+            );
+            continue;
+        }
         trials.push(match &graphics {
             Ok(device) => {
                 let (device, file) = (Arc::clone(device), scene.clone());

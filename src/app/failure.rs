@@ -94,7 +94,8 @@ fn exit_of_gpu(error: &GpuError) -> Exit {
         GpuError::NoAdapter { .. }
         | GpuError::NoDevice { .. }
         | GpuError::TooLarge { .. }
-        | GpuError::UnknownMethod { .. } => Exit::NoAdapter,
+        | GpuError::UnknownMethod { .. }
+        | GpuError::Billboards { .. } => Exit::NoAdapter,
         _ => Exit::Internal,
     }
 }

@@ -122,7 +122,8 @@ impl FieldGrid {
             sure_plants: 0,
             one_more: 0,
         };
-        let grid = bare.with_density(grass.density_per_m2);
+        let grows = !grass.species.is_empty();
+        let grid = bare.with_density(if grows { grass.density_per_m2 } else { 0.0 });
         let plants = u64::from(grid.triangles_per_tile()) * u64::from(grid.plants_per_triangle());
         if plants > MAX_PLANTS_PER_TILE {
             return Err(GridError::TileTooFull {

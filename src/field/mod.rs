@@ -143,15 +143,37 @@ impl Field {
             .then_some(plant)
     }
 
-    /// Calls `found` with every tile that has a plant which may touch a box in the world.
-    pub fn near(&self, bounds: &Bounds, found: impl FnMut(TileId)) {
-        let reach_m = f64::from(self.reach_m);
+    /// Calls `found` with every tile that has a plant or a billboard which may touch a box in the world.
+    pub fn near(&self, bounds: &Bounds, mut found: impl FnMut(TileId)) {
+        let (grid, ground) = (&self.grid, &self.ground);
         self.octree
-            .query(&self.grid, &self.ground, bounds, reach_m, found);
+            .query(grid, ground, bounds, self.farthest_m(), |tile| {
+                if !self.is_bare() || self.billboards_on(tile) > 0 {
+                    found(tile);
+                }
+            });
     }
 
-    /// Whether anything grows here at all.
+    /// How far anything of either layer can reach from its root, in metres.
+    pub fn farthest_m(&self) -> f64 {
+        let billboards_m = self.billboards.as_ref().map_or(0.0, |field| field.reach_m);
+        f64::from(most(self.reach_m, billboards_m))
+    }
+
+    /// How many billboards stand on a tile.
+    pub fn billboards_on(&self, tile: TileId) -> u32 {
+        let field = self.billboards.as_ref();
+        field.map_or(0, |field| field.range(tile).len() as u32)
+    }
+
+    /// Whether no plant of the first layer grows here.
     pub fn is_bare(&self) -> bool {
         self.seeds.species.is_empty() || self.grid.plants_per_triangle() == 0
+    }
+
+    /// Whether nothing of either layer grows here.
+    pub fn is_empty(&self) -> bool {
+        let billboards = self.billboards.as_ref();
+        self.is_bare() && billboards.is_none_or(|field| field.all.is_empty())
     }
 }

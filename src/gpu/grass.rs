@@ -143,8 +143,12 @@ impl GpuGrass {
     /// tiles beyond it are refused and counted by the meadow.
     ///
     /// # Errors
-    /// A ground or blade table larger than the device can bind.
+    /// A ground or blade table larger than the device can bind; billboards, which no kernel moves.
     pub fn new(gpu: &Gpu, kernels: &GrassKernels, meadow: &mut Meadow) -> Result<Self, GpuError> {
+        if let Some(billboards) = &meadow.field.billboards {
+            let count = billboards.all.len();
+            return Err(GpuError::Billboards { count });
+        }
         let solver = &meadow.scene.solver;
         let unknown = unknown_settings(&solver.method);
         if !unknown.is_empty() {

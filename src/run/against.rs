@@ -45,14 +45,18 @@ impl AgainstReference {
 /// What a difference is worth: one verdict per limit. They are told, but no scenario fails by them: a
 /// scene says with its expectations what it needs.
 fn verdicts(difference: &Difference, substep_s: f64) -> Vec<Verdict> {
+    let unjudged = |reason: &str| Verdict {
+        passed: None,
+        measured: None,
+        limit: None,
+        reason: Some(reason.into()),
+        ..limited("poses", 0.0, 0.0, "m")
+    };
+    let left_out = (difference.billboards_left_out > 0)
+        .then(|| unjudged("billboards are not compared with the reference yet"));
     if difference.touched_plants == 0 {
-        return vec![Verdict {
-            passed: None,
-            measured: None,
-            limit: None,
-            reason: Some("no plant was touched in either run".into()),
-            ..limited("poses", 0.0, 0.0, "m")
-        }];
+        let untouched = || unjudged("no plant was touched in either run");
+        return vec![left_out.unwrap_or_else(untouched)];
     }
     let rms_limit_m = MOST_RMS_M[usize::from(substep_s <= SHORT_S)];
     let flips = difference.side_flips as f64 / difference.touched_plants as f64;
@@ -74,6 +78,7 @@ fn verdicts(difference: &Difference, substep_s: f64) -> Vec<Verdict> {
         passed: Some(overlap >= LEAST_OVERLAP),
         ..limited("imprint overlap, at least", overlap, LEAST_OVERLAP, "")
     }));
+    verdicts.extend(left_out);
     verdicts
 }
 
@@ -94,6 +99,8 @@ pub struct Against {
     meadow: Meadow,
     engine: Engine,
     comparison: Comparison,
+    /// Most billboards at once that a body had touched in the run.
+    billboards: u64,
 }
 
 impl Against {
@@ -114,6 +121,7 @@ impl Against {
             engine,
             meadow,
             comparison: Comparison::default(),
+            billboards: 0,
         }
     }
 
@@ -140,12 +148,19 @@ impl Against {
         let ours = touched_plants(meadow, engine)?;
         let theirs = touched_plants(&self.meadow, &mut self.engine)?;
         self.comparison.frame(&ours, &theirs);
+        let tiles = meadow.work.tiles.iter();
+        let billboards = tiles.flat_map(|tile| engine.standing_billboards(meadow, tile));
+        let touched = billboards.filter(|billboard| billboard.touched_at != 0);
+        self.billboards = self.billboards.max(touched.count() as u64);
         Ok(())
     }
 
     /// What differed over all frames.
     pub fn finish(&self) -> Difference {
-        self.comparison.finish(&self.meadow.field)
+        Difference {
+            billboards_left_out: self.billboards,
+            ..self.comparison.finish(&self.meadow.field)
+        }
     }
 }
 
@@ -180,5 +195,11 @@ mod tests {
         };
         assert_eq!(passed(&poor, 1.0 / 120.0), [Some(false); 3]);
         assert_eq!(passed(&Difference::default(), 1.0 / 120.0), [None]);
+        let mixed = Difference {
+            billboards_left_out: 3,
+            ..poor
+        };
+        let last = passed(&mixed, 1.0 / 120.0).pop();
+        assert_eq!(last, Some(None), "billboards are not judged");
     }
 }

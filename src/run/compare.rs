@@ -88,6 +88,8 @@ pub struct Difference {
     pub touched_plants: u64,
     /// World x and z of their roots.
     pub flipped_roots_m: Vec<[f64; 2]>,
+    /// Most billboards at once that a body had touched: they are not compared.
+    pub billboards_left_out: u64,
 }
 
 impl Comparison {
@@ -149,6 +151,7 @@ impl Comparison {
             side_flips: roots.len() as u64,
             touched_plants: self.touched.len() as u64,
             flipped_roots_m: roots.into_iter().flatten().collect(),
+            billboards_left_out: 0,
         }
     }
 }

@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use crate::base::Real;
 use crate::field::TileId;
 use crate::gpu::{Gpu, GpuError, GpuGrass, GpuState, GrassKernels, TickError};
-use crate::sim::measure::{self, GrassState, Snapshot, Standing};
+use crate::scene::Scene;
+use crate::sim::measure::{self, GrassState, Snapshot, Standing, StandingBillboard};
 use crate::sim::reference;
 use crate::sim::work::TileWork;
 use crate::sim::{Grass, Meadow};
@@ -22,6 +23,12 @@ pub enum EngineChoice {
 }
 
 impl EngineChoice {
+    /// True where the gpu engine would be taken by default if it had what the scene needs: it has no
+    /// kernels for billboards. One that was asked for refuses such a scene.
+    pub fn falls_back(self, scene: &Scene) -> bool {
+        self == Self::Auto && scene.billboards.is_some()
+    }
+
     /// True if the gpu engine is to run on this device.
     pub fn is_gpu_on(self, gpu: &Gpu) -> bool {
         match self {
@@ -66,7 +73,7 @@ impl Engine {
     /// The engine that others are compared with. Gives the meadow's solver its settings, so that it
     /// has to be asked for before the first sub-step.
     pub fn reference(meadow: &mut Meadow) -> Self {
-        meadow.scene.solver = reference::solver(&meadow.scene.solver);
+        meadow.set_solver(reference::solver(&meadow.scene.solver));
         Self::Reference(Box::default())
     }
 
@@ -198,7 +205,39 @@ impl Engine {
         })
     }
 
-    /// Plants that a body has pushed at least `far_m` off within the last `ticks` ticks.
+    /// Every billboard of an active tile as it stands, in the order of places. The gpu engine has none.
+    pub fn standing_billboards(
+        &self,
+        meadow: &Meadow,
+        tile: &TileWork,
+    ) -> Vec<StandingBillboard<f64>> {
+        match self {
+            Self::Cpu(grass) => all_billboards(meadow, tile, grass),
+            Self::Reference(grass) => all_billboards(meadow, tile, grass.as_ref()),
+            Self::Gpu(_) => Vec::new(),
+        }
+    }
+
+    /// The billboards rooted near a place. The gpu engine has none.
+    pub fn billboards_near(
+        &self,
+        meadow: &Meadow,
+        place_m: [f64; 2],
+        within_m: f64,
+    ) -> Vec<StandingBillboard<f64>> {
+        match self {
+            Self::Cpu(grass) => {
+                let near = measure::billboards_near(meadow, grass, place_m, within_m);
+                near.into_iter().map(StandingBillboard::widened).collect()
+            }
+            Self::Reference(grass) => {
+                measure::billboards_near(meadow, grass.as_ref(), place_m, within_m)
+            }
+            Self::Gpu(_) => Vec::new(),
+        }
+    }
+
+    /// Plants and billboards that a body has pushed at least `far_m` off within the last `ticks` ticks.
     ///
     /// # Errors
     ///
@@ -249,7 +288,7 @@ impl Engine {
         }
     }
 
-    /// Plants pushed in the last sub-step and the most rounds one of them took; `None` for an
+    /// Plants and billboards pushed in the last sub-step and the most rounds one of them took; `None` for an
     /// engine that does not say.
     pub fn response(&self) -> Option<(u64, u32)> {
         match self {
@@ -287,6 +326,18 @@ fn all_standing<R: Real>(
     let slab = state.slab(tile.slab);
     slab.map_or_else(Vec::new, |slab| {
         widened(measure::standing(meadow, tile, slab))
+    })
+}
+
+fn all_billboards<R: Real>(
+    meadow: &Meadow,
+    tile: &TileWork,
+    state: &impl GrassState<R>,
+) -> Vec<StandingBillboard<f64>> {
+    let slab = state.billboards(tile.slab);
+    slab.map_or_else(Vec::new, |slab| {
+        let all = measure::standing_billboards(meadow, tile, slab);
+        all.into_iter().map(StandingBillboard::widened).collect()
     })
 }
 

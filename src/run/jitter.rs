@@ -9,8 +9,14 @@ use crate::sim::Meadow;
 
 use super::engine::Engine;
 
-/// Nodes of held plants by tile and order in it.
-type Held = BTreeMap<(TileId, usize), Vec<Vec3<f64>>>;
+/// Nodes of held plants and billboards by tile and order in it.
+type Held = BTreeMap<(TileId, Layer, usize), Vec<Vec3<f64>>>;
+
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+enum Layer {
+    Plants,
+    Billboards,
+}
 
 /// Follows the plants that a body holds, from frame to frame, while no wind blows and every body
 /// stands still.
@@ -76,7 +82,13 @@ fn held_plants(meadow: &Meadow, engine: &mut Engine) -> Result<Held, GpuError> {
     for tile in colliding.filter(|tile| !tile.contacts.is_empty()) {
         for (order, plant) in engine.standing(meadow, tile)?.into_iter().enumerate() {
             if plant.touched_at == meadow.work.now {
-                held.insert((tile.tile, order), plant.nodes);
+                held.insert((tile.tile, Layer::Plants, order), plant.nodes);
+            }
+        }
+        let billboards = engine.standing_billboards(meadow, tile).into_iter();
+        for (order, billboard) in billboards.enumerate() {
+            if billboard.touched_at == meadow.work.now {
+                held.insert((tile.tile, Layer::Billboards, order), billboard.nodes);
             }
         }
     }

@@ -69,7 +69,10 @@ impl Judge {
                 at_most_deg,
             } if due(*at_s) => {
                 let plants = engine.near(meadow, *near_m, *within_m)?;
-                let leans: Vec<f64> = plants.iter().map(|p| p.lean_rad().to_degrees()).collect();
+                let billboards = engine.billboards_near(meadow, *near_m, *within_m);
+                let leans = plants.iter().map(|p| p.lean_rad());
+                let leans = leans.chain(billboards.iter().map(|b| b.lean_rad()));
+                let leans: Vec<f64> = leans.map(f64::to_degrees).collect();
                 let what = format!("plants within {within_m} m of {near_m:?} lean");
                 Some(mean_verdict(
                     what,
@@ -88,7 +91,10 @@ impl Judge {
                 at_most_m,
             } if due(*at_s) => {
                 let plants = engine.near(meadow, *near_m, *within_m)?;
-                let offsets: Vec<f64> = plants.iter().map(|p| p.offset_m()).collect();
+                let billboards = engine.billboards_near(meadow, *near_m, *within_m);
+                let offsets = plants.iter().map(|p| p.offset_m());
+                let offsets = offsets.chain(billboards.iter().map(|b| b.offset_m()));
+                let offsets: Vec<f64> = offsets.collect();
                 let what = format!("plants within {within_m} m of {near_m:?} are off");
                 Some(mean_verdict(
                     what,

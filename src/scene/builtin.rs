@@ -34,6 +34,7 @@ pub const SCENES: &[Builtin] = builtin![
     "hills",
     "hundred_bodies",
     "meadow",
+    "meadow_60k",
     "mesh_drop",
     "million_blades",
     "still",

@@ -3,11 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// One expectation. Places are x and z on the ground, in metres.
+/// One expectation. Places are x and z on the ground, in metres. What is said of plants holds for
+/// billboards too.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum Expectation {
-    /// The mean lean of the plants rooted near a place, from root to tip against the vertical.
+    /// The mean lean of the plants rooted near a place, from root to tip against the vertical; of a
+    /// billboard, from the middle of its lower edge to that of its upper one.
     Lean {
         /// When, in simulated seconds.
         at_s: f64,
@@ -44,7 +46,8 @@ pub enum Expectation {
         #[serde(default)]
         at_most_m: Option<f64>,
     },
-    /// No segment is ever longer or shorter by more than this share of its length.
+    /// No segment is ever longer or shorter by more than this share of its length; of a billboard, no side
+    /// or diagonal of a cell of its nodes.
     Strain {
         /// Share of the segment's length.
         at_most: f64,

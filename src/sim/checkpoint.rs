@@ -30,6 +30,7 @@ pub struct Checkpoint<R: Real> {
     ticks: u32,
     script: ScriptState,
     slabs: Vec<Option<Arc<Slab<R>>>>,
+    billboard_slabs: Vec<Option<Arc<Slab<R>>>>,
     pushed: u64,
     rounds: u32,
     rounds_peak: u32,
@@ -49,6 +50,7 @@ impl<R: Real> Checkpoint<R> {
             ticks: meadow.ticks,
             script: meadow.script_state(),
             slabs: grass.slabs().to_vec(),
+            billboard_slabs: grass.billboards().slabs().to_vec(),
             pushed: grass.pushed,
             rounds: grass.rounds,
             rounds_peak: grass.rounds_peak,
@@ -67,6 +69,8 @@ impl<R: Real> Checkpoint<R> {
         meadow.ticks = self.ticks;
         meadow.set_script_state(self.script.clone());
         grass.set_slabs(self.slabs.clone());
+        let billboards = grass.billboards_mut();
+        billboards.set_slabs(self.billboard_slabs.clone());
         grass.pushed = self.pushed;
         grass.rounds = self.rounds;
         grass.rounds_peak = self.rounds_peak;
@@ -81,8 +85,10 @@ impl<R: Real> Checkpoint<R> {
 
     /// Bytes of slabs that nothing but this checkpoint holds.
     pub fn own_slab_bytes(&self) -> u64 {
-        let own = self.slabs.iter().flatten();
-        own.filter(|slab| Arc::strong_count(slab) == 1)
+        let slabs = self.slabs.iter().chain(&self.billboard_slabs);
+        slabs
+            .flatten()
+            .filter(|slab| Arc::strong_count(slab) == 1)
             .map(|slab| slab.bytes())
             .sum()
     }
@@ -100,5 +106,13 @@ impl<R: Real> Grass<R> {
             }
         }
         self.set_slabs(slabs);
+        let mut slabs = self.billboards().slabs().to_vec();
+        slabs.resize_with(meadow.tiles.slabs.high_water() as usize, || None);
+        for tile in &meadow.work.tiles {
+            if let Some(slab) = state.billboards(tile.slab) {
+                slabs[tile.slab as usize] = Some(Arc::new(slab.clone()));
+            }
+        }
+        self.billboards_mut().set_slabs(slabs);
     }
 }

@@ -1,7 +1,11 @@
 //! The grass of the `cpu` engine: slabs in memory, passes over tiles on every core.
 //!
 //! A plant reads and writes nothing but its own state, so results do not depend on the number of
-//! threads, on the order of tiles, or on which slab a tile has.
+//! threads, on the order of tiles, or on which slab a tile has. Billboards are a second layer with
+//! slabs of their own; a tile's slab number is the same in both.
+
+mod billboards;
+mod blades;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -9,23 +13,22 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use crate::base::{Real, Vec3};
-use crate::field::grid::ground_in_anchor;
-use crate::field::{Field, Nodes, Plant, wind_pose};
 use crate::scene::Solver;
 use crate::scene::method::Recovery;
 
-use super::collide::{self, Movable};
-use super::contact::Touch;
+pub use billboards::{BillboardLayer, rooted_in, tile_of};
+use blades::{Touched, respond, touched_plants};
+pub use blades::{poses, segment_length};
+
 use super::depth_cube::{COVER_MARGIN_M, DepthCube};
-use super::fault::Fault;
 use super::meadow::Meadow;
-use super::recover::{Fading, fade_literally, is_back, recovering_pose};
-use super::relax::{self, Ground, Place, RelaxSettings};
+use super::recover::fade_literally;
+use super::relax::RelaxSettings;
 use super::slab::Slab;
 use super::solid::Solid;
 use super::state_hash::StateHash;
 use super::voxel_field::VoxelField;
-use super::work::{TileWork, Work};
+use super::work::TileWork;
 
 /// State and scratch of the grass in float `R`.
 #[derive(Debug, Default)]
@@ -36,6 +39,8 @@ pub struct Grass<R: Real> {
     grown: Vec<Solid<R>>,
     /// Plants found touched by the last collide pass, per tile of the work.
     touched: Vec<Vec<Touched>>,
+    /// The second layer; without slabs in a scene that has no billboards.
+    billboards: BillboardLayer<R>,
     /// Plants that were pushed in the last sub-step.
     pub pushed: u64,
     /// Most rounds any plant took in the last sub-step, and since the start.
@@ -44,13 +49,6 @@ pub struct Grass<R: Real> {
     pub times: PassTimes,
     /// Kept by whoever asks for it, see [`Grass::chain_hash`].
     pub state_hash: StateHash,
-}
-
-/// A plant to respond: its place in the tile and the sweeps it needs, 0 if it is merely held.
-#[derive(Clone, Copy, Debug)]
-struct Touched {
-    place: u32,
-    sweeps: u32,
 }
 
 /// A tile whose touched plants respond, with its slab taken out of the pool meanwhile.
@@ -82,6 +80,7 @@ impl<R: Real> Grass<R> {
             slabs: Vec::new(),
             grown: Vec::new(),
             touched: Vec::new(),
+            billboards: BillboardLayer::default(),
             pushed: 0,
             rounds: 0,
             rounds_peak: 0,
@@ -109,6 +108,7 @@ impl<R: Real> Grass<R> {
         for &(_, slab) in &meadow.changes.woken {
             self.slabs[slab as usize] = Some(Arc::new(Slab::new(plants, segments)));
         }
+        self.billboards.assign_slabs(meadow);
     }
 
     /// Draws the depth cubes, and samples the voxel fields, that are wanted for the first time.
@@ -151,6 +151,7 @@ impl<R: Real> Grass<R> {
                     *touched = touched_plants(meadow, grown, tile, slab);
                 }
             });
+        self.billboards.collide(meadow, grown);
         self.times.collide += start.elapsed();
     }
 
@@ -172,7 +173,7 @@ impl<R: Real> Grass<R> {
                 Some((tile, &touched[..], self.slabs[tile.slab as usize].take()?))
             })
             .collect();
-        let results: Vec<(u64, u32)> = jobs
+        let mut results: Vec<(u64, u32)> = jobs
             .par_iter_mut()
             .map(|(tile, touched, slab)| {
                 let slab = Arc::make_mut(slab);
@@ -182,6 +183,7 @@ impl<R: Real> Grass<R> {
         for (tile, _, slab) in jobs {
             self.slabs[tile.slab as usize] = Some(slab);
         }
+        results.push(self.billboards.relax(meadow, grown));
         self.pushed = results.iter().map(|r| r.0).sum();
         self.rounds = results.iter().map(|r| r.1).max().unwrap_or(0);
         self.rounds_peak = self.rounds_peak.max(self.rounds);
@@ -193,20 +195,14 @@ impl<R: Real> Grass<R> {
 
     /// Rewrites the offset of every plant that was not touched in this sub-step.
     fn fade_literally(&mut self, meadow: &Meadow) {
-        let step_over_t = R::of(meadow.step_over_t());
-        let (now, segments) = (meadow.work.now, meadow.field.table.segments as usize);
-        self.slabs.par_iter_mut().flatten().for_each(|slab| {
-            let slab = Arc::make_mut(slab);
-            let plants = slab
-                .touched_at
-                .iter()
-                .zip(slab.offsets.chunks_mut(segments));
-            for (&touched_at, offsets) in plants {
-                if touched_at != 0 && touched_at != now {
-                    fade_literally(offsets, now - touched_at, step_over_t);
-                }
-            }
-        });
+        fade_slabs(
+            &mut self.slabs,
+            meadow.field.table.segments as usize,
+            meadow,
+        );
+        if let Some(weave) = &meadow.weave {
+            fade_slabs(self.billboards.slabs_mut(), weave.grid.movable(), meadow);
+        }
     }
 
     /// Every slab by its number.
@@ -216,6 +212,15 @@ impl<R: Real> Grass<R> {
 
     pub(super) fn set_slabs(&mut self, slabs: Vec<Option<Arc<Slab<R>>>>) {
         self.slabs = slabs;
+    }
+
+    /// The second layer.
+    pub fn billboards(&self) -> &BillboardLayer<R> {
+        &self.billboards
+    }
+
+    pub(super) fn billboards_mut(&mut self) -> &mut BillboardLayer<R> {
+        &mut self.billboards
     }
 
     /// The state of a slab in use.
@@ -240,188 +245,20 @@ fn draw_cube(parts: &super::parts::Parts, index: usize, solver: &Solver) -> Dept
     }
 }
 
-/// A plant's wind pose and its pose of now.
-pub fn poses<R: Real>(
-    field: &Field,
-    work: &Work,
-    fading: &Fading<R>,
-    tile: &TileWork,
-    plant: &Plant,
-    slab: &Slab<R>,
-    place: u32,
-) -> (Nodes<R>, Nodes<R>) {
-    let segments = field.table.segments as usize;
-    let wind = wind_pose(plant, &field.table, work.wind.bend(&tile.anchor, plant));
-    let mut touched_at = slab.touched_at[place as usize];
-    if touched_at == 0 {
-        return (wind, wind);
-    }
-    if fading.planted.is(Fault::TimerPerTile) {
-        touched_at = slab.touched_at.iter().copied().max().unwrap_or(0);
-    }
-    let first = place as usize * segments;
-    let pose = recovering_pose(
-        &wind,
-        &slab.offsets[first..first + segments],
-        work.now - touched_at,
-        fading,
-        segment_length(plant, segments),
-    );
-    (wind, pose)
-}
-
-/// Whether a plant was touched in the sub-step before this one.
-fn was_touched(work: &Work, touched_at: u32) -> bool {
-    touched_at != 0 && work.now - touched_at == 1
-}
-
-/// A plant's wind pose of now, and the pose that bodies meet in this sub-step: the one it was left
-/// in if it was touched in the sub-step before, wherever the wind has gone since, else its pose of
-/// now.
-fn poses_before<R: Real>(
-    field: &Field,
-    work: &Work,
-    fading: &Fading<R>,
-    tile: &TileWork,
-    plant: &Plant,
-    slab: &Slab<R>,
-    place: u32,
-) -> (Nodes<R>, Nodes<R>) {
-    if !was_touched(work, slab.touched_at[place as usize]) {
-        return poses(field, work, fading, tile, plant, slab, place);
-    }
-    let segments = field.table.segments as usize;
-    let mut pose = wind_pose(
-        plant,
-        &field.table,
-        work.wind_before.bend(&tile.anchor, plant),
-    );
-    let offsets = &slab.offsets[place as usize * segments..][..segments];
-    for (node, &offset) in pose[1..].iter_mut().zip(offsets) {
-        *node += offset;
-    }
-    let wind = wind_pose(plant, &field.table, work.wind.bend(&tile.anchor, plant));
-    (wind, pose)
-}
-
-/// Rest length of a plant's segments, in metres.
-pub fn segment_length<R: Real>(plant: &Plant, segments: usize) -> R {
-    R::of_f32(plant.height_m) * R::of(1.0 / segments as f64)
-}
-
-fn touches_of<'a, R: Real>(
-    meadow: &'a Meadow,
-    grown: &'a [Solid<R>],
-    tile: &TileWork,
-) -> Vec<Touch<'a, R>> {
-    meadow
-        .work
-        .contacts_of(tile)
-        .iter()
-        .enumerate()
-        .map(|(number, contact)| {
-            let part = contact.part as usize;
-            Touch::new(number, contact, &meadow.parts.parts[part], &grown[part])
-        })
-        .collect()
-}
-
-fn touched_plants<R: Real>(
-    meadow: &Meadow,
-    grown: &[Solid<R>],
-    tile: &TileWork,
-    slab: &Slab<R>,
-) -> Vec<Touched> {
-    let field = &meadow.field;
-    let segments = field.table.segments as usize;
-    let fading = Fading::new(meadow);
-    let touches = touches_of(meadow, grown, tile);
-    let mut found = Vec::new();
-    for place in 0..field.grid.plants_per_tile() {
-        let Some(plant) = field.responding_plant(&tile.anchor, tile.tile, place) else {
-            continue;
-        };
-        let reach = R::of_f32(plant.height_m);
-        let sweeps = relax::sweeps_for(&touches, Vec3::of_f32(plant.root_in_anchor), reach);
-        if sweeps == 0 {
-            continue;
-        }
-        let (_, pose) = poses_before(field, &meadow.work, &fading, tile, &plant, slab, place);
-        let before = was_touched(&meadow.work, slab.touched_at[place as usize]);
-        let pinned = |p: Vec3<R>| {
-            before
-                && p.y - ground_in_anchor(&field.ground, &tile.anchor, p.x, p.z)
-                    <= R::of(collide::PINNED_M)
-        };
-        if collide::touched(
-            Movable::of_blade(&pose, segments),
-            &touches,
-            sweeps,
-            reach,
-            pinned,
-        ) {
-            found.push(Touched { place, sweeps });
-        } else if before {
-            let let_go = || poses(field, &meadow.work, &fading, tile, &plant, slab, place).1;
-            if collide::held(Movable::of_blade(&pose, segments), &touches, reach)
-                || collide::in_the_way(Movable::of_blade(&let_go(), segments), &touches, reach)
-            {
-                found.push(Touched { place, sweeps: 0 });
+/// Rewrites the offsets of all that was touched before this sub-step; `nodes` are those of each.
+fn fade_slabs<R: Real>(slabs: &mut [Option<Arc<Slab<R>>>], nodes: usize, meadow: &Meadow) {
+    let step_over_t = R::of(meadow.step_over_t());
+    let now = meadow.work.now;
+    slabs.par_iter_mut().flatten().for_each(|slab| {
+        let slab = Arc::make_mut(slab);
+        let each = slab
+            .touched_at
+            .iter()
+            .zip(slab.offsets.chunks_mut(nodes.max(1)));
+        for (&touched_at, offsets) in each {
+            if touched_at != 0 && touched_at != now {
+                fade_literally(offsets, now - touched_at, step_over_t);
             }
         }
-    }
-    found
-}
-
-fn respond<R: Real>(
-    meadow: &Meadow,
-    grown: &[Solid<R>],
-    tile: &TileWork,
-    touched: &[Touched],
-    slab: &mut Slab<R>,
-    settings: &RelaxSettings<R>,
-) -> (u64, u32) {
-    let field = &meadow.field;
-    let segments = field.table.segments as usize;
-    let fading = Fading::new(meadow);
-    let touches = touches_of(meadow, grown, tile);
-    let mut rounds_peak = 0;
-    for &Touched { place, sweeps } in touched {
-        let Some(plant) = field.plant(&tile.anchor, tile.tile, place) else {
-            continue;
-        };
-        let (wind, mut pose) =
-            poses_before(field, &meadow.work, &fading, tile, &plant, slab, place);
-        let first = place as usize * segments;
-        let surroundings = Place {
-            ground: Ground {
-                heights: &field.ground,
-                anchor: &tile.anchor,
-            },
-            wind: &wind,
-            segments,
-            length: segment_length(&plant, segments),
-        };
-        let age = meadow.work.now - slab.touched_at[place as usize];
-        // What is back in the wind pose has no memory of faces, whenever its tile gave its slab
-        // back.
-        if is_back(age, meadow.step_over_t() as f32) {
-            slab.faces[first..first + segments].fill(0);
-        }
-        let rounds = relax::respond(
-            &mut pose,
-            &mut slab.faces[first..first + segments],
-            &touches,
-            sweeps,
-            R::of_f32(plant.height_m),
-            &surroundings,
-            settings,
-        );
-        rounds_peak = rounds_peak.max(rounds);
-        for j in 0..segments {
-            slab.offsets[first + j] = pose[j + 1] - wind[j + 1];
-        }
-        slab.touched_at[place as usize] = meadow.work.now;
-    }
-    (touched.len() as u64, rounds_peak)
+    });
 }

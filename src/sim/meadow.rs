@@ -12,21 +12,21 @@ use crate::field::tiles::Changes;
 use crate::field::wind::FADE_S;
 use crate::field::{ActiveTiles, Field, FieldError, Kinds, TileId, TileState, WindNow};
 use crate::scene::assets::Assets;
-use crate::scene::{Action, Event, Invalid, Likes, Scene, Wind, validate};
+use crate::scene::{Action, Event, Invalid, Likes, Scene, Solver, Wind, validate};
 use crate::terrain::{ColourMap, CoverMap, HeightGrid, TerrainError};
 
+use super::billboard::{GridError, Weave};
 use super::fault::Planted;
 use super::parts::{Parts, Tested, takes_whole_bodies};
-use super::slab::slab_bytes;
+use super::state_size::{StateSize, all_at_rest, has_bends, weave_of};
 use super::work::{Mover, TileWork, Work};
-
-/// Most bytes of grass state a meadow may use.
-pub const STATE_BUDGET_BYTES: u64 = 1 << 30;
 
 /// Everything of a scene that moves or is decided per tick, but the grass's state.
 pub struct Meadow {
     pub scene: Scene,
     pub field: Field,
+    /// Nodes and springs of a touched billboard; `None` in a scene without billboards.
+    pub weave: Option<Weave>,
     pub bodies: Bodies,
     pub parts: Parts,
     /// The true shape of every body, whatever the passes test.
@@ -56,7 +56,7 @@ pub struct Counters {
     pub capped_sweeps: u64,
     /// Tiles that could not wake in a sub-step because every slab was in use.
     pub refused_tiles: u64,
-    /// Largest number of plants in active tiles at once.
+    /// Largest number of plants and billboards in active tiles at once.
     pub plants_peak: u64,
     /// Largest number of bytes of grass state at once.
     pub state_bytes_peak: u64,
@@ -88,6 +88,8 @@ pub enum MeadowError {
     #[error(transparent)]
     Field(#[from] FieldError),
     #[error(transparent)]
+    Grid(#[from] GridError),
+    #[error(transparent)]
     Body(#[from] BodyError),
     #[error("there is no kind of plant {kind}: the scene has {known}, counted from 0")]
     NoSuchKind { kind: usize, known: usize },
@@ -106,7 +108,7 @@ fn near_movers<'a>(
 ) -> (BTreeSet<TileId>, BTreeMap<TileId, Vec<&'a Mover>>) {
     let mut touched = BTreeSet::new();
     let mut near: BTreeMap<TileId, Vec<&Mover>> = BTreeMap::new();
-    if field.is_bare() {
+    if field.is_empty() {
         return (touched, near);
     }
     for mover in movers {
@@ -134,13 +136,6 @@ fn lay_out(ground: HeightGrid, scene: &Scene, assets: &Assets) -> Result<Field, 
     Ok(field.with_billboards(billboards, map)?)
 }
 
-/// No tile awake, and as much state as the budget allows.
-fn all_at_rest(field: &Field, scene: &Scene) -> ActiveTiles {
-    let slab = slab_bytes(field.grid.plants_per_tile(), scene.solver.segments).max(1);
-    let slab_limit = (STATE_BUDGET_BYTES / slab).min(u64::from(field.grid.tile_count()));
-    ActiveTiles::new(slab_limit as u32)
-}
-
 impl Meadow {
     /// Lays out a scene.
     ///
@@ -152,7 +147,8 @@ impl Meadow {
         let ground = crate::terrain::height_grid(&scene.terrain, assets)?;
         let bodies = Bodies::new(&scene, assets, &ground)?;
         let field = lay_out(ground, &scene, assets)?;
-        let tiles = all_at_rest(&field, &scene);
+        let weave = weave_of(&field, &scene.solver)?;
+        let tiles = all_at_rest(&field, &scene.solver, weave.as_ref());
         let mut script = scene.script.clone();
         script.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
         let wind = WindChange {
@@ -162,6 +158,7 @@ impl Meadow {
         };
         let mut meadow = Self {
             field,
+            weave,
             bodies,
             parts: Parts::default(),
             truth: Parts::default(),
@@ -202,7 +199,7 @@ impl Meadow {
         validate(&scene)?;
         let map = Arc::clone(&kinds.map);
         self.field.seeds.kinds = Kinds::new(&scene.grass, &self.field.grid, map);
-        self.tiles = all_at_rest(&self.field, &scene);
+        self.tiles = all_at_rest(&self.field, &scene.solver, self.weave.as_ref());
         self.work.tiles.clear();
         self.work.contacts.clear();
         self.changes = Changes::default();
@@ -310,7 +307,7 @@ impl Meadow {
             .zip(0..)
             .map(|(link, number)| {
                 let shape = &shapes[link.shape as usize];
-                Mover::new(link, number, shape, solver, f64::from(self.field.reach_m))
+                Mover::new(link, number, shape, solver, self.field.farthest_m())
             })
             .collect();
         let (touched, near) = near_movers(&self.field, &self.parts, &self.movers);
@@ -356,20 +353,35 @@ impl Meadow {
 
     fn count(&mut self) {
         let capped = self.movers.iter().filter(|mover| mover.capped).count() as u64;
-        let plants = u64::from(self.field.grid.plants_per_tile());
-        let active = self.tiles.len() as u64;
-        let bytes = self.state_bytes();
+        let state = self.state_size();
         let counters = &mut self.counters;
-        counters.capped_sweeps += if self.field.is_bare() { 0 } else { capped };
+        counters.capped_sweeps += if self.field.is_empty() { 0 } else { capped };
         counters.refused_tiles = self.tiles.slabs.refused;
-        counters.plants_peak = counters.plants_peak.max(active * plants);
-        counters.state_bytes_peak = counters.state_bytes_peak.max(bytes);
+        counters.plants_peak = counters.plants_peak.max(state.plants);
+        counters.state_bytes_peak = counters.state_bytes_peak.max(state.bytes);
     }
 
     /// Bytes of grass state in use now.
     pub fn state_bytes(&self) -> u64 {
-        let segments = self.scene.solver.segments;
-        self.tiles.len() as u64 * slab_bytes(self.field.grid.plants_per_tile(), segments)
+        self.state_size().bytes
+    }
+
+    fn state_size(&self) -> StateSize {
+        StateSize::of(
+            &self.field,
+            &self.scene.solver,
+            self.weave.as_ref(),
+            &self.tiles,
+        )
+    }
+
+    /// Takes other settings, before the first sub-step; a reference's may go beyond what a scene may ask
+    /// for.
+    pub fn set_solver(&mut self, solver: Solver) {
+        self.scene.solver = solver;
+        if let Some(weave) = &mut self.weave {
+            *weave = Weave::new(weave.grid, has_bends(&self.scene.solver));
+        }
     }
 
     /// The wind at a time; the change from one wind to the next fades out and in.

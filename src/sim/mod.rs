@@ -17,6 +17,7 @@ pub mod slab;
 pub mod solid;
 pub mod springs;
 pub mod state_hash;
+pub mod state_size;
 pub mod tick;
 pub mod true_bodies;
 pub mod voxel_field;

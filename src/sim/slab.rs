@@ -34,8 +34,8 @@ impl<R: Real> Slab<R> {
     }
 }
 
-/// Bytes of one slab: per plant a tick, per node three floats and a face word, padded for a plant
+/// Bytes of one slab of plants or billboards: for each a tick, per movable node three floats and a face word, padded
 /// to whole 16-byte rows as on the GPU.
-pub fn slab_bytes(plants: u32, segments: u32) -> u64 {
-    u64::from(plants) * (16 + 16 * u64::from(segments))
+pub fn slab_bytes(plants: u32, nodes: u32) -> u64 {
+    u64::from(plants) * (16 + 16 * u64::from(nodes))
 }

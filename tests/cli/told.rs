@@ -260,3 +260,41 @@ fn the_clamp_of_literal_springs_is_told() {
     );
     assert!(json(&run(&["--json"]))["scenarios"][0]["literal_springs"].is_null());
 }
+
+const CLUMPS: &str = r#"(
+    description: "A ball drops into clumps.",
+    duration_s: 0.2,
+    terrain: (ground: Flat(size_m: (4, 4))),
+    grass: (species: []),
+    billboards: (density_per_m2: 40),
+    bodies: [(name: "ball", shape: Ball(radius_m: 0.2), position_m: (0, 0.3, 0))],
+    expect: [
+        SimulatedPlants(at_least: 1),
+        Lean(at_s: 0.15, near_m: (0, 0), within_m: 0.5, at_least_deg: 1),
+        Offset(at_s: 0.15, near_m: (0, 0), within_m: 0.5, at_least_m: 0.001),
+        Imprint(body: "ball", at_s: 0.15, at_least: 0.9),
+    ],
+)"#;
+
+/// Whoever asks for the gpu is refused; whoever does not gets the cpu, wherever there is a device.
+#[test]
+fn billboards_run_on_the_cpu_and_the_gpu_refuses_them() {
+    let clumps = scene("clumps.ron", CLUMPS);
+    let output = sward(&["run", &clumps, "--engine", "gpu"]);
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(code(&output), 4, "{text}");
+    let has_device = !text.contains("no graphics adapter");
+    assert!(
+        !has_device || text.contains("no kernels for billboards") && text.contains("--engine cpu")
+    );
+    let output = sward(&["run", &clumps, "--json"]);
+    let report = json(&output);
+    assert_eq!(code(&output), 0, "{report}");
+    assert_eq!(report["engine"], "cpu");
+    let output = sward(&["run", &clumps, "--against", "reference", "--json"]);
+    let told = json(&output).to_string();
+    assert!(
+        told.contains("billboards are not compared with the reference yet"),
+        "{told}"
+    );
+}

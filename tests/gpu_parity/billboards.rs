@@ -163,7 +163,7 @@ pub fn billboards_are_equal(device: &Device) -> Result<(), Failed> {
 
 /// The scene of the paper's measurements.
 pub fn sixty_thousand_billboards_are_equal(device: &Device) -> Result<(), Failed> {
-    let source = include_str!("../../scenes/waiting/meadow_60k.ron");
+    let source = include_str!("../../scenes/meadow_60k.ron");
     let loaded = parse_scene_with("meadow_60k", source, &ASSETS)?;
     let started = Instant::now();
     let meadow = Meadow::new(loaded.scene, &loaded.assets)?;

@@ -3,6 +3,7 @@
 #![allow(clippy::expect_used, reason = "a test says what it expects by failing")]
 
 mod analytic;
+mod billboards;
 mod bounds;
 mod convergence;
 mod pressed;

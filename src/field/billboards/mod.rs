@@ -64,7 +64,7 @@ pub struct BillboardField {
     pub ranges: Vec<u32>,
     /// Columns and rows of nodes of a touched billboard.
     pub nodes: [u32; 2],
-    /// How far a billboard can reach from its root, in metres.
+    /// How far one of them can reach from its root, in metres.
     pub reach_m: f32,
 }
 
@@ -119,9 +119,9 @@ impl BillboardField {
         }
         let seeds = BillboardSeeds::new(billboards, rounds, grid, map);
         let (all, ranges) = listed(&seeds, ground);
-        let reach_m = billboards.clumps.iter().fold(0.0_f32, |reach, kind| {
-            // Sides and half an edge, in whatever direction they point.
-            most(reach, kind.height_m[1] + 0.5 * kind.width_m[1])
+        // Sides and half an edge, in whatever direction they point.
+        let reach_m = all.iter().fold(0.0_f32, |reach, billboard| {
+            most(reach, billboard.height_m + 0.5 * billboard.width_m)
         });
         Ok(Self {
             seeds,

@@ -74,7 +74,7 @@ impl Lane {
             ..loaded.scene.solver.clone()
         };
         let mut lane = Self::new(loaded, &laid_out, Kind::Double)?;
-        lane.meadow.scene.solver = solver;
+        lane.meadow.set_solver(solver);
         Ok(lane)
     }
 

@@ -28,10 +28,11 @@ pub mod springs;
 pub mod tile;
 
 pub use batch::Batch;
-pub use grid::{Grid, Weave};
+pub use grid::{Grid, GridError, Weave};
 pub use shape::Quad;
 
 use crate::base::{Real, Vec3};
+use crate::field::Billboard;
 
 /// What the kernel needs to know of a billboard.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +48,20 @@ pub struct Rooted {
     pub flexibility: f32,
     /// Phase of its own trembling.
     pub flutter_turns: f32,
+}
+
+impl From<&Billboard> for Rooted {
+    fn from(of: &Billboard) -> Self {
+        Self {
+            root_in_anchor: of.root_in_anchor,
+            across: of.across,
+            up: of.up,
+            height_m: of.height_m,
+            width_m: of.width_m,
+            flexibility: of.flexibility,
+            flutter_turns: of.flutter_turns,
+        }
+    }
 }
 
 impl Rooted {
