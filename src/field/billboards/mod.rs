@@ -6,11 +6,13 @@
 //! `shaders/billboard_place.wgsl`.
 
 mod packed;
+mod quad;
 mod seeds;
 
 pub use packed::{
     AZIMUTH_STEPS, CLUMP_VARIANTS, FINE_STEPS, PackedBillboard, UNIT_STEP, UNIT_STEPS,
 };
+pub use quad::WIND_SHARE;
 pub use seeds::{
     BILLBOARD_COUNT_WORD, BILLBOARD_WORD, BillboardSeeds, ClumpNumbers, FACES_FROM,
     MOST_TILT_TURNS, TileStart,
@@ -21,8 +23,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::base::most;
-use crate::scene::Billboards;
 use crate::scene::limits::{BILLBOARDS, BILLBOARDS_PER_TILE, CLUMPS, TILES};
+use crate::scene::{Billboards, ClumpKind};
 use crate::terrain::{CoverMap, HeightGrid};
 
 use super::grid::{FieldGrid, TileId};
@@ -64,6 +66,8 @@ pub struct BillboardField {
     pub ranges: Vec<u32>,
     /// Columns and rows of nodes of a touched billboard.
     pub nodes: [u32; 2],
+    /// What the clumps look like, kind by kind.
+    pub clumps: Vec<ClumpKind>,
     /// How far a billboard can reach from its root, in metres.
     pub reach_m: f32,
 }
@@ -128,6 +132,7 @@ impl BillboardField {
             all,
             ranges,
             nodes: billboards.nodes,
+            clumps: billboards.clumps.clone(),
             reach_m,
         })
     }
