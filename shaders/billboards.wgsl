@@ -105,7 +105,7 @@ fn billboard_vertex(
     let fan = across * ((right - 0.5) * 1.1);
     let normal = normalize(towards * 0.55 + fan + UP * (0.5 + 0.5 * up));
     let light = light_between(billboard_look.cover, 1.0 - up, position);
-    let rgb = clump_rgb(tile, billboard, lot) * mix(0.75, 1.2, up);
+    let rgb = clump_rgb(tile, billboard, lot) * mix(0.85, 1.2, up);
     let radiance = leaf_radiance(rgb, normal, light, position);
 
     // Every other one shows its picture mirrored. Row 0 of a picture is its top.

@@ -314,7 +314,7 @@ impl Canvas {
                 // A pale midrib, a dark foot, a paler tip.
                 let side = (away / half).min(1.0);
                 let rib = 1.1 - 0.22 * side;
-                let foot = 0.62 + 0.38 * (y / 0.35).clamp(0.0, 1.0);
+                let foot = 0.72 + 0.28 * (y / 0.35).clamp(0.0, 1.0);
                 let tone = rib * foot * (0.92 + 0.2 * place);
                 stroke.rgb.map(|c| c * tone)
             })
