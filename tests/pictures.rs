@@ -15,6 +15,8 @@ use sward::scene::Scene;
 use sward::sim::{Grass, Meadow, tick};
 use sward::terrain::ColourMap;
 
+#[path = "pictures/clumps.rs"]
+mod clumps;
 #[path = "pictures/coats.rs"]
 mod coats;
 #[path = "pictures/counted.rs"]
@@ -52,6 +54,8 @@ const CHECKS: &[(&str, Check)] = &[
         "density_is_a_factor_of_the_prefix",
         counted::density_is_a_factor_of_the_prefix,
     ),
+    ("clumps_are_drawn", clumps::clumps_are_drawn),
+    ("no_clumps_cost_nothing", clumps::no_clumps_cost_nothing),
     ("coats_grow_outwards", coats::coats_grow_outwards),
     ("coats_grow_on_faces", coats::coats_grow_on_faces),
     ("no_coats_cost_nothing", coats::no_coats_cost_nothing),
@@ -84,20 +88,28 @@ impl Stage {
         }
         let mut nodes = ActiveNodes::new(gpu)?;
         nodes.copy(gpu, &meadow, &grass)?;
-        let mut renderer = Renderer::new(gpu, PictureTarget::FORMAT, SIZE)?;
-        let terrain = &meadow.scene.terrain;
-        let look = GroundLook {
-            map: &ColourMap::of_patches(terrain, &meadow.field.ground),
-            soil_rgb: terrain.soil_rgb,
-        };
-        let bodies = &meadow.bodies;
-        renderer.set_scene(gpu, &meadow.field, &look, bodies.shapes(), bodies.coated())?;
-        Ok(Self {
+        let renderer = Renderer::new(gpu, PictureTarget::FORMAT, SIZE)?;
+        let mut stage = Self {
             meadow,
             nodes,
             renderer,
             target: PictureTarget::new(gpu, SIZE)?,
-        })
+        };
+        stage.show(gpu)?;
+        Ok(stage)
+    }
+
+    /// Gives the renderer this stage's scene.
+    fn show(&mut self, gpu: &Gpu) -> Result<(), Failed> {
+        let terrain = &self.meadow.scene.terrain;
+        let field = &self.meadow.field;
+        let look = GroundLook {
+            map: &ColourMap::of_patches(terrain, &field.ground),
+            soil_rgb: terrain.soil_rgb,
+        };
+        let bodies = &self.meadow.bodies;
+        let (shapes, coats) = (bodies.shapes(), bodies.coated());
+        Ok(self.renderer.set_scene(gpu, field, &look, shapes, coats)?)
     }
 
     fn shoot(&mut self, gpu: &Gpu, shown: Shown) -> Result<Picture, Failed> {

@@ -3,6 +3,7 @@
 //! Both are levels of the ground's bintree: the two triangles of a seeding cell are two of its
 //! triangles, with the same corners, and so are the two halves of a tile.
 
+use crate::base::most;
 use crate::terrain::bintree::{SeedCounts, SeedTriangle, Seeding, Viewpoint};
 
 use super::Field;
@@ -32,10 +33,12 @@ impl Field {
     }
 
     /// Tiles of which at least one half may be in view, each once, in no particular order. The
-    /// closest corner of that half is within `reach_m` of the eye.
+    /// closest corner of that half is within `reach_m` of the eye. What stands on it is of either layer.
     pub fn tiles_in_view(&self, viewpoint: &Viewpoint, reach_m: f32) -> Vec<TileId> {
         let seeding = Seeding {
             halvings: self.grid.halvings as i32 - self.grid.tile_cells.ilog2() as i32,
+            plant_m: (self.billboards.as_ref())
+                .map_or(self.reach_m, |field| most(self.reach_m, field.reach_m)),
             ..self.seeding(reach_m)
         };
         // Most tiles are found half after half; only of the others the second half is sought.

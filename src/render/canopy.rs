@@ -1,5 +1,6 @@
 //! The plants as a whole, as far as the light is concerned.
 
+use crate::base::most;
 use crate::field::Field;
 use crate::scene::Form;
 
@@ -12,13 +13,52 @@ pub(super) struct Canopy {
     pub(super) cover: f32,
 }
 
+/// Share of a quad that its clump's picture covers, about.
+const CLUMP_COVER: f64 = 0.35;
+
 impl Canopy {
+    const BARE: Self = Self {
+        height_m: 0.0,
+        cover: 0.0,
+    };
+
     pub(super) fn of(field: &Field) -> Self {
+        Self::of_plants(field).with(Self::of_billboards(field))
+    }
+
+    /// Two layers on one ground: light that passes one may be caught by the other.
+    fn with(self, other: Self) -> Self {
+        Self {
+            height_m: most(self.height_m, other.height_m),
+            cover: 1.0 - (1.0 - self.cover) * (1.0 - other.cover),
+        }
+    }
+
+    /// Clumps that hide a part of their quads, where they grow at all.
+    fn of_billboards(field: &Field) -> Self {
+        let Some(billboards) = field
+            .billboards
+            .as_ref()
+            .filter(|field| !field.all.is_empty())
+        else {
+            return Self::BARE;
+        };
+        let (mut area_m2, mut height_m) = (0.0_f64, 0.0_f32);
+        for billboard in &billboards.all {
+            area_m2 += f64::from(billboard.height_m) * f64::from(billboard.width_m);
+            height_m = most(height_m, billboard.height_m);
+        }
+        let [wide_m, deep_m] = field.ground.size_m();
+        let layers = CLUMP_COVER * area_m2 / (wide_m * deep_m);
+        Self {
+            height_m,
+            cover: 1.0 - (-layers).exp() as f32,
+        }
+    }
+
+    fn of_plants(field: &Field) -> Self {
         if field.is_bare() {
-            return Self {
-                height_m: 0.0,
-                cover: 0.0,
-            };
+            return Self::BARE;
         }
         let kinds = &field.seeds.species;
         let mean = |[low, span]: [f32; 2]| low + 0.5 * span;

@@ -40,6 +40,12 @@ pub enum RenderError {
         known: usize,
     },
 
+    #[error(
+        "billboards.clumps needs {layers} pictures of clumps; the device's textures have at most {limit} \
+         layers (its max_texture_array_layers): give fewer kinds"
+    )]
+    ClumpLayers { layers: u32, limit: u32 },
+
     #[error("{what} is {found}; {wanted}")]
     BadInput {
         what: &'static str,

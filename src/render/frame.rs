@@ -5,6 +5,7 @@ use crate::field::Field;
 use crate::gpu::{FieldBuffers, Gpu, PassTimer};
 use crate::terrain::bintree::MeshChange;
 
+use super::billboards::{BillboardCounts, BillboardsLayer};
 use super::blade_tiles::Size;
 use super::bodies::{BodiesLayer, BodyInstance};
 use super::camera::View;
@@ -20,7 +21,7 @@ use super::seed_triangles::SeededTriangles;
 use super::shadow::{ShadowFit, ShadowMap};
 use super::sky::{SkyLayer, Sun};
 use super::sort_plants::SeededClusters;
-use super::targets::{Targets, most_samples, picture_bytes};
+use super::targets::{Part, Targets, most_samples, picture_bytes};
 use super::terrain::TerrainLayer;
 use super::tonemap::{Exposure, TonemapLayer};
 use super::view_group::{Frame, ViewGroups};
@@ -32,6 +33,8 @@ pub struct Renderer {
     shadow: ShadowMap,
     bodies: BodiesLayer,
     plants: PlantsLayer,
+    /// None until a scene has billboards.
+    billboards: Option<BillboardsLayer>,
     /// None until a scene has coats.
     coats: Option<CoatLayer>,
     /// What the kernels of coats bind beside their own buffers, and rounds of Philox.
@@ -83,6 +86,7 @@ impl Renderer {
         Ok(Self {
             bodies: BodiesLayer::new(gpu, &groups, samples)?,
             plants: PlantsLayer::new(gpu, &groups, samples)?,
+            billboards: None,
             coats: None,
             field: None,
             terrain: TerrainLayer::new(gpu, &groups, samples)?,
@@ -116,6 +120,8 @@ impl Renderer {
         self.terrain
             .set_ground(gpu, field, &buffers, &colour, look.soil_rgb)?;
         self.field = Some((buffers.clone(), field.seeds.rounds));
+        let (groups, samples) = (&self.groups, self.samples);
+        self.billboards = BillboardsLayer::of(gpu, groups, samples, field, &buffers, &colour)?;
         self.plants.set_field(field, buffers, &colour);
         self.set_shapes(gpu, shapes, coats)
     }
@@ -162,6 +168,12 @@ impl Renderer {
     /// What the last frame drew of the plants.
     pub fn blade_counts(&self) -> BladeCounts {
         self.plants.counts
+    }
+
+    /// What the last frame drew of the billboards; `None` where the scene has none, and so no pipelines
+    /// and buffers for them.
+    pub fn billboard_counts(&self) -> Option<BillboardCounts> {
+        self.billboards.as_ref().map(|layer| layer.counts)
     }
 
     /// What the last frame drew of every form of plant, counted and read back from the device: for
@@ -217,7 +229,19 @@ impl Renderer {
         self.bodies.draw_shadow(&mut pass);
         drop(pass);
 
-        let mut pass = self.targets.begin(&mut encoder, timer.render("scene"));
+        let billboards = self.billboards.as_ref().filter(|layer| !layer.is_empty());
+        let mut part = Part::Only;
+        if let Some(billboards) = billboards {
+            // First of all, since they hide the most.
+            let times = timer.render("billboards");
+            let mut pass = self.targets.begin(&mut encoder, Part::First, times);
+            self.groups.bind(&mut pass);
+            billboards.draw(&mut pass);
+            drop(pass);
+            part = Part::Last;
+        }
+        let times = timer.render("scene");
+        let mut pass = self.targets.begin(&mut encoder, part, times);
         self.groups.bind(&mut pass);
         self.bodies.draw(&mut pass);
         if let Some(coats) = &self.coats {
@@ -316,6 +340,11 @@ impl Renderer {
             self.plants.write(gpu, input.view, picture, blades)?;
         } else {
             self.plants.clear();
+        }
+        match (&mut self.billboards, &input.blades) {
+            (Some(layer), Some(blades)) => layer.write(gpu, input.view, picture, blades)?,
+            (Some(layer), None) => layer.clear(),
+            (None, _) => {}
         }
         self.overlay.write(gpu, input.view, input.marks)?;
         self.tonemap.write(gpu, input.exposure)?;

@@ -4,11 +4,14 @@
 //! scene, everything else for one frame. All positions go to the device relative to the eye.
 
 mod active_nodes;
+mod billboards;
 mod blade_tiles;
 mod blades;
 mod bodies;
 mod camera;
 mod canopy;
+mod clump_picture;
+mod clump_textures;
 mod coat;
 mod coat_place;
 mod coat_scene;
@@ -36,6 +39,7 @@ mod twigs;
 mod view_group;
 
 pub use active_nodes::ActiveNodes;
+pub use billboards::BillboardCounts;
 pub use blade_tiles::{BladeDetail, Count, Submission, Transition};
 pub use bodies::BodyInstance;
 pub use camera::{Frustum, View};
@@ -54,6 +58,7 @@ pub use sky::{Daylight, Sun};
 pub use sort_plants::SeededClusters;
 pub use tonemap::Exposure;
 
+use crate::field::billboards::{MAX_CLUMPS, WIND_SHARE};
 use crate::field::count::{BINS, COUNT_WORD, NEAR_M};
 use crate::field::grid::ANCHOR_CELLS;
 use crate::field::kinds::MAX_TASTES;
@@ -65,6 +70,7 @@ use crate::gpu::wgsl::WgslFile;
 use crate::wgsl_file;
 use blade_tiles::WIDEN_POWER;
 use blades::{TUFT_RADIUS_M, TUFT_TURNS};
+use clump_textures::CLUMP_TINT_MOST;
 use coat_place::{COAT_BUCKETS, COAT_DETAILS, COAT_VERTICES, NO_COAT_BUCKET};
 use ground_look::{LOOK_BARE, LOOK_GRASS, LOOK_GRAVEL, LOOK_LITTER, TASTE_ROWS};
 use plant_form::{BUCKET_VERTICES, BUCKETS, DETAILS, FORM_BLADE, FORM_COUNT};
@@ -100,6 +106,13 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/planar_shadow.wgsl"),
     wgsl_file!("shared/screen.wgsl"),
     wgsl_file!("shared/shadow.wgsl"),
+    wgsl_file!(
+        "billboards.wgsl",
+        ANCHOR_CELLS,
+        CLUMP_TINT_MOST,
+        MAX_CLUMPS,
+        WIND_SHARE
+    ),
     wgsl_file!("blades.wgsl", TUFT_RADIUS_M, TUFT_TURNS),
     wgsl_file!("bodies.wgsl"),
     wgsl_file!("coat.wgsl", COAT_VERTICES),
@@ -172,6 +185,8 @@ pub const SHADERS: &[WgslFile] = &[
 pub fn layouts() -> Vec<StructLayout> {
     vec![
         view_group::Frame::layout(),
+        billboards::BillboardLook::layout(),
+        billboards::BillboardTile::layout(),
         blade_tiles::DrawnTile::layout(),
         bodies::BodyRecord::layout(),
         coat_place::CoatBody::layout(),

@@ -18,6 +18,23 @@ pub(super) struct Targets {
     samples: u32,
 }
 
+/// Which of a picture's passes one is: they are parted so that layers can be timed alone.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Part {
+    Only,
+    First,
+    Last,
+}
+
+impl Part {
+    fn load<V>(self, empty: V) -> wgpu::LoadOp<V> {
+        match self {
+            Self::Only | Self::First => wgpu::LoadOp::Clear(empty),
+            Self::Last => wgpu::LoadOp::Load,
+        }
+    }
+}
+
 /// Samples per pixel: 4 where the light format can have them, else 1.
 pub(super) fn most_samples(gpu: &Gpu) -> u32 {
     let flags = LIGHT_FORMAT
@@ -101,22 +118,24 @@ impl Targets {
         })?)
     }
 
-    /// Starts the pass that all layers draw into. Depth starts at 0, infinitely far away.
+    /// Starts a pass that layers draw into. Depth starts at 0, infinitely far away.
     pub(super) fn begin<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
+        part: Part,
         times: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
         let multisampled = self.samples > 1;
+        let is_last = part != Part::First;
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: &self.light,
                 depth_slice: None,
-                resolve_target: multisampled.then_some(&self.resolved),
+                resolve_target: (multisampled && is_last).then_some(&self.resolved),
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: if multisampled {
+                    load: part.load(wgpu::Color::BLACK),
+                    store: if multisampled && is_last {
                         wgpu::StoreOp::Discard
                     } else {
                         wgpu::StoreOp::Store
@@ -126,8 +145,12 @@ impl Targets {
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.depth,
                 depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(0.0),
-                    store: wgpu::StoreOp::Discard,
+                    load: part.load(0.0),
+                    store: if is_last {
+                        wgpu::StoreOp::Discard
+                    } else {
+                        wgpu::StoreOp::Store
+                    },
                 }),
                 stencil_ops: None,
             }),

@@ -21,7 +21,7 @@ use super::timeline::Timeline;
 /// have to catch up.
 const LONGEST_FRAME_S: f64 = 0.25;
 /// Passes of a frame that are timed.
-const DRAWN_PASSES: usize = 11;
+const DRAWN_PASSES: usize = 12;
 
 /// A scene with its engine, and the renderer that shows it.
 pub struct Stage {

@@ -21,14 +21,17 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::base::most;
-use crate::scene::Billboards;
 use crate::scene::limits::{BILLBOARDS, BILLBOARDS_PER_TILE, CLUMPS, TILES};
+use crate::scene::{Billboards, ClumpKind};
 use crate::terrain::{CoverMap, HeightGrid};
 
 use super::grid::{FieldGrid, TileId};
 
 /// Most kinds of clumps in one meadow.
 pub const MAX_CLUMPS: usize = CLUMPS;
+/// Share of the wind's bend that the straight sides of a quad take: the mean of s(2 − s), so that its upper
+/// edge moves as far as the tip of a blade of the same flexibility.
+pub const WIND_SHARE: f64 = 2.0 / 3.0;
 /// Tiles that one thread lays out at a time.
 const TILES_AT_ONCE: u32 = 256;
 
@@ -64,6 +67,8 @@ pub struct BillboardField {
     pub ranges: Vec<u32>,
     /// Columns and rows of nodes of a touched billboard.
     pub nodes: [u32; 2],
+    /// What the clumps look like, kind by kind.
+    pub clumps: Vec<ClumpKind>,
     /// How far one of them can reach from its root, in metres.
     pub reach_m: f32,
 }
@@ -128,6 +133,7 @@ impl BillboardField {
             all,
             ranges,
             nodes: billboards.nodes,
+            clumps: billboards.clumps.clone(),
             reach_m,
         })
     }

@@ -9,13 +9,11 @@
 //! s(2 − s) of the bend, ⅔ on average.
 
 use crate::base::{Real, Vec3, vec3};
+use crate::field::billboards::WIND_SHARE;
 use crate::field::{Anchor, WindNow};
 
 use super::grid::{ALONG, SIDES, Side};
 use super::{Grid, Rooted};
-
-/// Share of the wind's bend that a straight column takes: the mean of s(2 − s).
-pub const WIND_SHARE: f64 = 2.0 / 3.0;
 
 /// A billboard's quad at one instant, in its anchor's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
