@@ -160,6 +160,12 @@ impl Field {
         f64::from(most(self.reach_m, billboards_m))
     }
 
+    /// The billboards of a tile, in the order of its slab.
+    pub fn billboards_in(&self, tile: TileId) -> &[Billboard] {
+        let field = self.billboards.as_ref();
+        field.map_or(&[], |field| field.in_tile(tile))
+    }
+
     /// How many billboards stand on a tile.
     pub fn billboards_on(&self, tile: TileId) -> u32 {
         let field = self.billboards.as_ref();

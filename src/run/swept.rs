@@ -12,7 +12,6 @@ use crate::base::Vec3;
 use crate::field::{TileId, wind_pose};
 use crate::sim::Meadow;
 use crate::sim::billboard::Quad;
-use crate::sim::cpu::rooted_in;
 use crate::sim::work::{Contact, TileWork};
 
 /// Depth in a body from which a plant counts as swept, and distance from the wind pose from which
@@ -69,12 +68,12 @@ fn swept_in(meadow: &Meadow, tile: &TileWork, body: u32) -> Vec<(TileId, u32)> {
             found.push((tile.tile, place));
         }
     }
-    let billboards = rooted_in(meadow, tile);
-    for (rooted, place) in billboards.iter().zip(plants..) {
-        let quad = Quad::<f64>::in_wind(rooted, &tile.anchor, &meadow.work.wind);
+    let billboards = meadow.field.billboards_in(tile.tile);
+    for (billboard, place) in billboards.iter().zip(plants..) {
+        let quad = Quad::<f64>::in_wind(billboard, &tile.anchor, &meadow.work.wind);
         let columns = columns_of(meadow, &quad);
         let columns: Vec<&[Vec3<f64>]> = columns.iter().map(Vec::as_slice).collect();
-        if are_swept(meadow, &contacts, quad.root, rooted.reach_m(), &columns) {
+        if are_swept(meadow, &contacts, quad.root, billboard.reach_m(), &columns) {
             found.push((tile.tile, place));
         }
     }

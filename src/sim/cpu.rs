@@ -16,7 +16,7 @@ use crate::base::{Real, Vec3};
 use crate::scene::Solver;
 use crate::scene::method::Recovery;
 
-pub use billboards::{BillboardLayer, rooted_in, tile_of};
+pub use billboards::{BillboardLayer, tile_of};
 use blades::{Touched, respond, touched_plants};
 pub use blades::{poses, segment_length};
 

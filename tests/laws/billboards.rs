@@ -38,7 +38,7 @@ fn boards<R: Real>(meadow: &Meadow, grass: &Grass<R>) -> Boards {
 
 fn key<R: Real>(board: &StandingBillboard<R>) -> [u64; 3] {
     let [x, z] = board.root_in_world().map(f64::to_bits);
-    [x, z, f64::from(board.rooted.across[0]).to_bits()]
+    [x, z, f64::from(board.billboard.across[0]).to_bits()]
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn the_reference_has_the_same_imprint() {
         let far = |n: usize| (board.nodes[n] - truth.nodes[n]).length();
         let last = truth.nodes.len() - 1;
         let tip = far(last).max(far(last + 1 - truth.columns));
-        if tip > 0.25 * f64::from(truth.rooted.height_m) {
+        if tip > 0.25 * f64::from(truth.billboard.height_m) {
             folded += 1;
             continue;
         }

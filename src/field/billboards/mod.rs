@@ -20,7 +20,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::base::most;
+use crate::base::{Real, Vec3, most};
 use crate::scene::limits::{BILLBOARDS, BILLBOARDS_PER_TILE, CLUMPS, TILES};
 use crate::scene::{Billboards, ClumpKind};
 use crate::terrain::{CoverMap, HeightGrid};
@@ -56,6 +56,17 @@ pub struct Billboard {
     pub texture: u32,
     /// Place in the scene's list of kinds.
     pub kind: u32,
+}
+
+impl Billboard {
+    pub fn root<R: Real>(&self) -> Vec3<R> {
+        Vec3::of_f32(self.root_in_anchor)
+    }
+
+    /// Radius of a ball about the root that holds the billboard in any pose of its lengths, in metres.
+    pub fn reach_m<R: Real>(&self) -> R {
+        R::of_f32(self.width_m) * R::of(0.5) + R::of_f32(self.height_m)
+    }
 }
 
 /// Every billboard of a meadow, tile by tile.
@@ -144,6 +155,7 @@ impl BillboardField {
         self.ranges[tile] as usize..self.ranges[tile + 1] as usize
     }
 
+    /// Those of a tile, in the order of its slab.
     pub fn in_tile(&self, tile: TileId) -> &[Billboard] {
         &self.all[self.range(tile)]
     }

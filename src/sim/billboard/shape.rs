@@ -12,8 +12,9 @@ use crate::base::{Real, Vec3, vec3};
 use crate::field::billboards::WIND_SHARE;
 use crate::field::{Anchor, WindNow};
 
+use super::Grid;
 use super::grid::{ALONG, SIDES, Side};
-use super::{Grid, Rooted};
+use crate::field::Billboard;
 
 /// A billboard's quad at one instant, in its anchor's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +29,7 @@ pub struct Quad<R> {
 }
 
 impl<R: Real> Quad<R> {
-    pub fn in_wind(billboard: &Rooted, anchor: &Anchor, wind: &WindNow) -> Self {
+    pub fn in_wind(billboard: &Billboard, anchor: &Anchor, wind: &WindNow) -> Self {
         let bend = wind.bend_at(
             anchor,
             billboard.root_in_anchor,
@@ -39,7 +40,7 @@ impl<R: Real> Quad<R> {
     }
 
     /// The quad whose top the wind bends by `bend` along x and z.
-    pub fn bent(billboard: &Rooted, bend: [R; 2]) -> Self {
+    pub fn bent(billboard: &Billboard, bend: [R; 2]) -> Self {
         let up: Vec3<R> = Vec3::of_f32(billboard.up);
         let [cos, sin] = billboard.across.map(R::of_f32);
         let share = R::of(WIND_SHARE);

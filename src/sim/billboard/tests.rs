@@ -3,7 +3,7 @@
 use crate::base::philox::philox2x32;
 use crate::base::{Pose, Real, Vec3, vec3};
 use crate::bodies::{ConvexPart, DrawMesh, RigidShape, Solid as PartSolid};
-use crate::field::{Anchor, WindNow};
+use crate::field::{Anchor, Billboard, WindNow};
 use crate::scene::method::Recovery;
 use crate::scene::{Solver, Wind};
 use crate::sim::billboard::relax::Settings;
@@ -39,8 +39,8 @@ fn ground() -> HeightGrid {
     HeightGrid::flat(17, 17, 1.0)
 }
 
-fn billboard(width_m: f32, height_m: f32) -> Rooted {
-    Rooted {
+fn billboard(width_m: f32, height_m: f32) -> Billboard {
+    Billboard {
         root_in_anchor: [0.0; 3],
         across: [1.0, 0.0],
         up: [0.0, 1.0, 0.0],
@@ -48,6 +48,8 @@ fn billboard(width_m: f32, height_m: f32) -> Rooted {
         width_m,
         flexibility: 1.0,
         flutter_turns: 0.0,
+        texture: 0,
+        kind: 0,
     }
 }
 
@@ -80,7 +82,7 @@ fn chance(index: usize, seed: u32) -> f64 {
 fn shaken<'a, R: Real, const L: usize>(
     weave: &'a Weave,
     ground: &'a HeightGrid,
-    billboards: &[Rooted],
+    billboards: &[Billboard],
     seed: u32,
     size_m: f64,
 ) -> Batch<'a, R, L> {

@@ -12,7 +12,8 @@ use crate::terrain::HeightGrid;
 use super::batch::{Batch, Lane};
 use super::recover::{Fade, Poses};
 use super::relax::{FINENESS, Outcome, Settings, respond};
-use super::{Quad, Rooted, Weave};
+use super::{Quad, Weave};
+use crate::field::Billboard;
 
 /// Billboards side by side: as many as the few of a tile fill, two vectors of four floats each.
 pub const LANES: usize = 8;
@@ -21,7 +22,7 @@ pub const LANES: usize = 8;
 #[derive(Clone, Copy, Debug)]
 pub struct Tile<'a, R> {
     pub weave: &'a Weave,
-    pub billboards: &'a [Rooted],
+    pub billboards: &'a [Billboard],
     pub anchor: &'a Anchor,
     pub ground: &'a HeightGrid,
     /// Nothing of the ground within reach of the tile is higher, in metres over the anchor's origin.

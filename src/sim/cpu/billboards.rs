@@ -5,10 +5,11 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::base::Real;
+use crate::field::Billboard;
 use crate::sim::billboard::recover::Poses;
 use crate::sim::billboard::relax::Settings;
 use crate::sim::billboard::tile::{Responded, Tile, Touched};
-use crate::sim::billboard::{Batch, Rooted, Weave};
+use crate::sim::billboard::{Batch, Weave};
 use crate::sim::contact::Touch;
 use crate::sim::meadow::Meadow;
 use crate::sim::recover::Fading;
@@ -70,9 +71,9 @@ impl<R: Real> BillboardLayer<R> {
                 || Poses::new(weave),
                 |poses, (touched, tile)| {
                     if let Some(slab) = &slabs[tile.slab as usize] {
-                        let rooted = rooted_in(meadow, tile);
+                        let billboards = meadow.field.billboards_in(tile.tile);
                         let touches = touches_of(meadow, grown, tile);
-                        tile_of(meadow, weave, tile, &rooted, &touches)
+                        tile_of(meadow, weave, tile, billboards, &touches)
                             .touched(slab, poses, touched);
                     }
                 },
@@ -100,9 +101,9 @@ impl<R: Real> BillboardLayer<R> {
             .map_init(
                 || Poses::new(weave),
                 |poses, (tile, touched, slab)| {
-                    let rooted = rooted_in(meadow, tile);
+                    let billboards = meadow.field.billboards_in(tile.tile);
                     let touches = touches_of(meadow, grown, tile);
-                    let of_tile = tile_of(meadow, weave, tile, &rooted, &touches);
+                    let of_tile = tile_of(meadow, weave, tile, billboards, &touches);
                     let mut batch = Batch::new(weave);
                     let slab = Arc::make_mut(slab);
                     of_tile.respond(touched, slab, (&mut batch, poses), &settings)
@@ -140,21 +141,12 @@ impl<R: Real> BillboardLayer<R> {
     }
 }
 
-/// The billboards of a tile as the kernel knows them.
-pub fn rooted_in(meadow: &Meadow, tile: &TileWork) -> Vec<Rooted> {
-    let field = meadow.field.billboards.iter();
-    field
-        .flat_map(|field| field.in_tile(tile.tile))
-        .map(Rooted::from)
-        .collect()
-}
-
 /// What the billboards of a tile meet in the meadow's sub-step.
 pub fn tile_of<'a, R: Real>(
     meadow: &'a Meadow,
     weave: &'a Weave,
     tile: &'a TileWork,
-    billboards: &'a [Rooted],
+    billboards: &'a [Billboard],
     touches: &'a [Touch<'a, R>],
 ) -> Tile<'a, R> {
     Tile {

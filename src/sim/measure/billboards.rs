@@ -1,9 +1,10 @@
 //! Billboards as they stand.
 
 use crate::base::{Real, Vec3, most};
+use crate::field::Billboard;
 use crate::sim::billboard::recover::Poses;
-use crate::sim::billboard::{Quad, Rooted, Weave};
-use crate::sim::cpu::{rooted_in, tile_of};
+use crate::sim::billboard::{Quad, Weave};
+use crate::sim::cpu::tile_of;
 use crate::sim::meadow::Meadow;
 use crate::sim::slab::Slab;
 use crate::sim::work::TileWork;
@@ -15,7 +16,7 @@ use super::{GrassState, from_vertical_rad, mean_distance_m, tiles_near};
 pub struct StandingBillboard<R> {
     /// Number of the billboard within its tile.
     pub place: u32,
-    pub rooted: Rooted,
+    pub billboard: Billboard,
     /// World place of the anchor that `nodes` and `wind` are relative to.
     pub origin: [f64; 3],
     /// Nodes of a row; the lowest row comes first, and is pinned.
@@ -34,7 +35,7 @@ impl<R: Real> StandingBillboard<R> {
         let wide = |node: Vec3<R>| Vec3::of(node.to_f64());
         StandingBillboard {
             place: self.place,
-            rooted: self.rooted,
+            billboard: self.billboard,
             origin: self.origin,
             columns: self.columns,
             wind: self.wind.into_iter().map(wide).collect(),
@@ -46,7 +47,7 @@ impl<R: Real> StandingBillboard<R> {
 
     /// World x and z of the middle of the lower edge.
     pub fn root_in_world(&self) -> [f64; 2] {
-        let [x, _, z] = self.rooted.root_in_anchor.map(f64::from);
+        let [x, _, z] = self.billboard.root_in_anchor.map(f64::from);
         [self.origin[0] + x, self.origin[2] + z]
     }
 
@@ -101,20 +102,20 @@ pub fn standing_billboards<R: Real>(
     let Some(weave) = &meadow.weave else {
         return Vec::new();
     };
-    let rooted = rooted_in(meadow, tile);
-    let of_tile = tile_of(meadow, weave, tile, &rooted, &[]);
+    let billboards = meadow.field.billboards_in(tile.tile);
+    let of_tile = tile_of(meadow, weave, tile, billboards, &[]);
     let origin = meadow
         .field
         .grid
         .anchor_in_world(&tile.anchor, &meadow.field.ground);
-    let mut found = Vec::with_capacity(rooted.len());
+    let mut found = Vec::with_capacity(billboards.len());
     of_tile.poses(slab, &mut Poses::new(weave), |place, lane, poses| {
-        let quad = Quad::in_wind(&rooted[place], &tile.anchor, &meadow.work.wind);
+        let quad = Quad::in_wind(&billboards[place], &tile.anchor, &meadow.work.wind);
         let mut wind = Vec::with_capacity(weave.grid.nodes());
         quad.nodes(weave.grid, |_, node| wind.push(node));
         found.push(StandingBillboard {
             place: place as u32,
-            rooted: rooted[place],
+            billboard: billboards[place],
             origin,
             columns: weave.grid.columns,
             wind,

@@ -108,8 +108,8 @@ impl Snapshot {
     fn add_billboards<R: Real>(&mut self, meadow: &Meadow, tile: &TileWork, slab: &Slab<R>) {
         let bodies = TrueBodies::near(meadow, tile);
         for billboard in standing_billboards(meadow, tile, slab) {
-            let rooted = &billboard.rooted;
-            let near = || bodies.may_reach(rooted.root(), rooted.reach_m());
+            let at_rest = &billboard.billboard;
+            let near = || bodies.may_reach(at_rest.root(), at_rest.reach_m());
             if billboard.touched_at != 0 || near() {
                 self.add_billboard(meadow, tile, &bodies, &billboard);
             }
@@ -160,8 +160,8 @@ impl Snapshot {
         self.add_offsets(&billboard.nodes, &billboard.wind);
         let grown = Grown {
             touched_at: billboard.touched_at,
-            root: billboard.rooted.root(),
-            reach_m: billboard.rooted.reach_m(),
+            root: billboard.billboard.root(),
+            reach_m: billboard.billboard.reach_m(),
             lines: (0..billboard.columns)
                 .map(|column| wide(billboard.column(column)))
                 .collect(),

@@ -5,7 +5,7 @@ use super::*;
 
 /// Sub-steps of a tile with a ball that rolls slowly among its billboards and comes to rest.
 fn among<R: Real>(
-    boards: &[Rooted],
+    boards: &[Billboard],
     settings: &Settings<R>,
     sub_steps: u32,
     mut see: impl FnMut(u32, &Slab<R>, &Responded),
@@ -43,10 +43,10 @@ fn among<R: Real>(
     slab
 }
 
-fn scattered(count: usize) -> Vec<Rooted> {
+fn scattered(count: usize) -> Vec<Billboard> {
     let board = |n: usize| {
         let azimuth = 3.0 * chance(n, 11);
-        Rooted {
+        Billboard {
             root_in_anchor: [0.4 * chance(n, 12) as f32, 0.0, 0.4 * chance(n, 13) as f32],
             across: [azimuth.cos() as f32, azimuth.sin() as f32],
             ..billboard(
@@ -75,7 +75,7 @@ fn a_billboard_does_not_notice_its_neighbours() {
     let settings = Settings::<f32>::new(&Solver::default());
     let boards = scattered(21);
     let together = among(&boards, &settings, 60, |_, _, _| ());
-    let reversed: Vec<Rooted> = boards.iter().rev().copied().collect();
+    let reversed: Vec<Billboard> = boards.iter().rev().copied().collect();
     let backwards = among(&reversed, &settings, 60, |_, _, _| ());
     let mut touched = 0;
     for place in 0..boards.len() {
@@ -135,7 +135,7 @@ fn the_printed_springs_say_that_they_are_bounded() {
 fn a_clump_lies_down_along_the_motion() {
     let settings = Settings::<f32>::new(&Solver::default());
     for azimuth in [1.2_f64, 1.57, 1.9] {
-        let board = Rooted {
+        let board = Billboard {
             root_in_anchor: [0.0, 0.0, 0.05],
             across: [azimuth.cos() as f32, azimuth.sin() as f32],
             ..billboard(0.4, 0.5)

@@ -169,7 +169,7 @@ fn nothing_becomes_nan() {
 fn a_lane_is_a_billboard_by_itself() {
     let ground = ground();
     let weave = weave(4, 4);
-    let boards: Vec<Rooted> = (0..8)
+    let boards: Vec<Billboard> = (0..8)
         .map(|n| billboard(0.3 + 0.05 * n as f32, 0.7 - 0.06 * n as f32))
         .collect();
     let mut together: Batch<f32, 8> = shaken(&weave, &ground, &boards, 5, 0.1);

@@ -12,7 +12,7 @@ const BILLBOARDS: usize = 60_000;
 const PER_TILE: usize = 8;
 
 struct Load<'a> {
-    tiles: Vec<(Vec<Rooted>, Slab<f32>)>,
+    tiles: Vec<(Vec<Billboard>, Slab<f32>)>,
     touches: &'a [Touch<'a, f32>],
     weave: &'a Weave,
     ground: &'a HeightGrid,
@@ -20,7 +20,7 @@ struct Load<'a> {
 }
 
 impl Load<'_> {
-    fn tile<'t>(&'t self, boards: &'t [Rooted], now: u32) -> Tile<'t, f32> {
+    fn tile<'t>(&'t self, boards: &'t [Billboard], now: u32) -> Tile<'t, f32> {
         Tile {
             weave: self.weave,
             billboards: boards,
@@ -74,7 +74,7 @@ fn billboards_in_a_sub_step() {
         let contact = ball.contact(vec3(0.0, 0.15, 0.0), vec3(0.0, 0.15, 0.0));
         let touches = [Touch::new(0, &contact, ball.part(), &grown)];
         let tiles = (0..BILLBOARDS / PER_TILE).map(|t| {
-            let boards: Vec<Rooted> = (0..PER_TILE).map(|n| beside(t * PER_TILE + n)).collect();
+            let boards: Vec<Billboard> = (0..PER_TILE).map(|n| beside(t * PER_TILE + n)).collect();
             (boards, Slab::new(PER_TILE, weave.grid.movable()))
         });
         let mut load = Load {
@@ -120,10 +120,10 @@ fn billboards_in_a_sub_step() {
 }
 
 /// A billboard beside the ball, which presses two of its nodes aside by a millimetre or so.
-fn beside(n: usize) -> Rooted {
+fn beside(n: usize) -> Billboard {
     let turn = chance(n, 1) * std::f64::consts::PI;
     let away = 0.133 + 5e-4 * chance(n, 2);
-    Rooted {
+    Billboard {
         root_in_anchor: [(away * turn.cos()) as f32, 0.0, (away * turn.sin()) as f32],
         across: [-turn.sin() as f32, turn.cos() as f32],
         ..billboard(0.4, 0.5)
