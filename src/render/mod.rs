@@ -22,6 +22,7 @@ mod gravel;
 mod ground_look;
 mod ground_mesh;
 mod leaves;
+pub mod light;
 mod meadow_view;
 mod overlay;
 mod picture;
@@ -106,6 +107,7 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/planar_shadow.wgsl"),
     wgsl_file!("shared/screen.wgsl"),
     wgsl_file!("shared/shadow.wgsl"),
+    wgsl_file!("shared/volume_light.wgsl"),
     wgsl_file!(
         "billboards.wgsl",
         ANCHOR_CELLS,
@@ -194,6 +196,7 @@ pub fn layouts() -> Vec<StructLayout> {
         coat_place::CoatView::layout(),
         coat_place::PlacedPlant::layout(),
         coat_scene::CoatTriangle::layout(),
+        light::LightVolume::layout(),
         overlay::OverlayBox::layout(),
         plants::Bucket::layout(),
         plants::FormUniform::layout(),

@@ -1,8 +1,9 @@
 //! A scene that is simulated and drawn: what a window, a picture and an embedding program share.
 
 use std::sync::Arc;
+use std::time::Duration;
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, BodyError};
 use crate::gpu::{Gpu, GpuError, GrassKernels, PassTimer, TickError};
 use crate::render::{
     ActiveNodes, BladeCounts, BladeDetail, BladesInput, Exposure, FrameInput, GroundLook,
@@ -14,12 +15,15 @@ use crate::sim::{Meadow, MeadowError};
 use crate::terrain::ColourMap;
 
 use super::engine::{Engine, EngineChoice};
+use super::light::{LightCache, StageLight};
 use super::scenario::Outcome;
 use super::timeline::Timeline;
 
 /// Longest time that one displayed frame may add, in seconds: a window that was hidden does not
 /// have to catch up.
 const LONGEST_FRAME_S: f64 = 0.25;
+/// How often a wait for light volumes looks whether they are ready.
+const LIGHT_LOOK: Duration = Duration::from_millis(5);
 /// Passes of a frame that are timed.
 const DRAWN_PASSES: usize = 12;
 
@@ -34,6 +38,8 @@ pub struct Stage {
     kernels: GrassKernels,
     timer: PassTimer,
     timeline: Timeline,
+    /// None where the scene does not ask for light volumes.
+    light: Option<StageLight>,
     /// Body shapes the renderer knows.
     shapes: [usize; 2],
     pub sun: Sun,
@@ -50,6 +56,8 @@ pub enum StageError {
     Gpu(#[from] GpuError),
     #[error(transparent)]
     Render(#[from] RenderError),
+    #[error("the light volumes: {0}")]
+    Light(BodyError),
     #[error("the scene has no camera '{name}'; it has {known}")]
     UnknownCamera { name: String, known: String },
 }
@@ -114,6 +122,7 @@ impl Stage {
             sun: Sun::default(),
             exposure: Exposure::default(),
             detail: BladeDetail::of_device(gpu),
+            light: light_of(gpu, &renderer, &meadow)?,
             loaded: loaded.clone(),
             meadow,
             engine,
@@ -134,7 +143,10 @@ impl Stage {
         choice: EngineChoice,
     ) -> Result<(), StageError> {
         let (meadow, engine) = lay_out(gpu, &self.kernels, loaded, choice)?;
+        let light = light_of(gpu, &self.renderer, &meadow)?;
         show(gpu, &mut self.renderer, &meadow, &loaded.assets)?;
+        self.renderer.set_light(gpu, None)?;
+        self.light = light;
         self.timeline = new_timeline(&meadow);
         self.shapes = known_shapes(&meadow.bodies);
         self.loaded = loaded.clone();
@@ -251,6 +263,9 @@ impl Stage {
         overlay: bool,
     ) -> Result<(), StageError> {
         self.take_in_shapes(gpu)?;
+        if let Some(light) = &mut self.light {
+            light.follow(gpu, &mut self.renderer, self.sun)?;
+        }
         let meadow = &self.meadow;
         match &mut self.engine {
             Engine::Cpu(grass) => self.nodes.copy(gpu, meadow, grass)?,
@@ -284,6 +299,31 @@ impl Stage {
             time_s: meadow.time_s(),
         };
         Ok(self.renderer.draw(gpu, &input, target, &mut self.timer)?)
+    }
+
+    /// Light volumes of the scene; `None` where it does not ask for any. They are made on other threads
+    /// from the first picture on: until they are ready pictures are in plain light.
+    pub fn light(&mut self) -> Option<&mut StageLight> {
+        self.light.as_mut()
+    }
+
+    /// Waits for the light volumes under the present sun, and tells meanwhile what share of them is
+    /// there. A scene that does not ask for any costs nothing.
+    ///
+    /// # Errors
+    ///
+    /// Volumes that the device cannot hold.
+    pub fn finish_light(&mut self, gpu: &Gpu, mut tell: impl FnMut(f64)) -> Result<(), StageError> {
+        let Some(light) = &mut self.light else {
+            return Ok(());
+        };
+        light.follow(gpu, &mut self.renderer, self.sun)?;
+        while light.is_pending() {
+            tell(light.done_share());
+            std::thread::sleep(LIGHT_LOOK);
+            light.follow(gpu, &mut self.renderer, self.sun)?;
+        }
+        Ok(())
     }
 
     /// What the last picture drew of the plants.
@@ -327,6 +367,19 @@ fn lay_out(
         Engine::cpu()
     };
     Ok((meadow, engine))
+}
+
+/// Light volumes as the scene asks for them, if the device can hold them.
+fn light_of(
+    gpu: &Gpu,
+    renderer: &Renderer,
+    meadow: &Meadow,
+) -> Result<Option<StageLight>, StageError> {
+    let light = StageLight::of(meadow, LightCache::of_platform()).map_err(StageError::Light)?;
+    if let Some(light) = &light {
+        renderer.check_light(gpu, light.slices())?;
+    }
+    Ok(light)
 }
 
 fn show(

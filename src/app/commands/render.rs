@@ -134,6 +134,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
         _ => arguments.out.clone(),
     };
     ResultFile::create(&first)?;
+    light_up(&gpu, &mut stage)?;
     let mut shoot = Shoot {
         arguments,
         gpu: &gpu,
@@ -217,6 +218,21 @@ fn is_animation(file: &Path) -> Result<bool, Failure> {
             file.display()
         ))),
     }
+}
+
+/// Waits for the light volumes of a scene that asks for them, with a bar, and tells how they came.
+pub fn light_up(gpu: &Gpu, stage: &mut Stage) -> Result<(), Failure> {
+    if stage.light().is_none() {
+        return Ok(());
+    }
+    let progress = Progress::new("light volumes");
+    stage.finish_light(gpu, |share| progress.set(share))?;
+    drop(progress);
+    let news = stage.light().map(|light| light.take_news());
+    for line in news.unwrap_or_default() {
+        log::info!("{line}");
+    }
+    Ok(())
 }
 
 /// A stage that is photographed.
