@@ -7,7 +7,6 @@ use super::passes::depth_cube::DepthCubePass;
 use super::tick_data::{CubeJob, PartRecord, SolidRecord};
 use super::{Buffer, Gpu, GpuError};
 use crate::base::Vec3;
-use crate::scene::method::{Push, Sampling};
 use crate::sim::depth_cube::{DepthCube, cover_m};
 use crate::sim::parts::Parts;
 
@@ -139,13 +138,10 @@ impl Cubes {
         let first = solid.first_texel as usize;
         let count = 6 * (solid.resolution * solid.resolution) as usize;
         let texels = self.buffers.texels.read(gpu, first + count)?;
-        Ok(Some(DepthCube {
-            low: Vec3::of_f32(solid.low),
-            high: Vec3::of_f32(solid.high),
-            resolution: solid.resolution,
-            sampling: Sampling::default(),
-            push: Push::default(),
-            texels: texels[first..].to_vec(),
-        }))
+        Ok(Some(DepthCube::of_texels(
+            [solid.low, solid.high].map(Vec3::of_f32),
+            solid.resolution,
+            texels[first..].to_vec(),
+        )))
     }
 }

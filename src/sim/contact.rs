@@ -130,13 +130,12 @@ impl<'a, R: Real> Touch<'a, R> {
     }
 
     /// True where a vertex is certainly outside the part at `pose`, so that it has no way out: far
-    /// cheaper to know than the way. A depth cube of a convex part reaches beyond it by less than a
-    /// texel.
+    /// cheaper to know than the way out of a depth cube, which reaches beyond a convex part by less than
+    /// a texel. Of other colliders the way out asks for the depth itself, and first.
     pub fn is_clear_of(&self, pose: &Pose<R>, vertex: Vec3<R>) -> bool {
         let outside_m = match self.collider {
             _ if matches!(self.grown, Solid::Union(_) | Solid::Mesh { .. }) => return false,
-            ColliderOf::Voxels(_) => return false,
-            ColliderOf::Analytic(_) => R::ZERO,
+            ColliderOf::Voxels(_) | ColliderOf::Analytic(_) => return false,
             ColliderOf::Cube(cube) => R::of_f32(cube.texel_m()),
         };
         self.grown.depth(pose.inverse_point(vertex)) <= -outside_m

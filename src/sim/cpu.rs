@@ -238,11 +238,10 @@ fn draw_cube(parts: &super::parts::Parts, index: usize, solver: &Solver) -> Dept
             .iter()
             .any(|other| other.solid.depth(other.pose.inverse_point(in_body)) > COVER_MARGIN_M)
     };
-    DepthCube {
-        sampling: solver.method.sampling,
-        push: solver.method.push,
-        ..DepthCube::draw(&part.grown, solver.cube_resolution, covered)
-    }
+    let mut cube = DepthCube::draw(&part.grown, solver.cube_resolution, covered);
+    cube.sampling = solver.method.sampling;
+    cube.push = solver.method.push;
+    cube
 }
 
 /// Rewrites the offsets of all that was touched before this sub-step; `nodes` are those of each.

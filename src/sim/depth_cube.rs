@@ -69,6 +69,18 @@ pub struct DepthCube {
     pub push: Push,
     /// Six faces of `resolution`² texels: flags and depth, and the packed normal.
     pub texels: Vec<[u32; 2]>,
+    /// Their normals, unpacked once: done anew at each of the 24 corners that a point looks up, that costs
+    /// more than the rest of the look-up.
+    normals: Vec<Vec3<f32>>,
+}
+
+/// Where a point is between the texels of the faces along one axis.
+#[derive(Clone, Copy, Debug)]
+struct Between<R> {
+    /// The texels before and after it, their weights, and the way from their middles to the point in metres.
+    texel: [usize; 2],
+    weight: [R; 2],
+    off_m: [R; 2],
 }
 
 /// A face's surface as a point sees it.
@@ -78,6 +90,7 @@ struct Surface<R> {
     /// else along the face's axis.
     behind: R,
     along_axis: R,
+    /// Not of unit length.
     normal: Vec3<R>,
     hidden: bool,
 }
@@ -117,12 +130,19 @@ impl DepthCube {
                 }
             }
         }
+        Self::of_texels([low, high], resolution, texels)
+    }
+
+    /// The cube whose six faces hold these texels, with the default sampling and push.
+    pub fn of_texels([low, high]: [Vec3<f32>; 2], resolution: u32, texels: Vec<[u32; 2]>) -> Self {
+        let normals = texels.iter().map(|&[_, packed]| unpack_normal(packed));
         Self {
             low,
             high,
             resolution,
             sampling: Sampling::default(),
             push: Push::default(),
+            normals: normals.collect(),
             texels,
         }
     }
@@ -135,8 +155,15 @@ impl DepthCube {
 
     /// True where a point is farther behind all six faces than `depth_m`.
     pub fn is_deeper<R: Real>(&self, p: Vec3<R>, depth_m: R) -> bool {
-        self.bounds_hold(p)
-            && (0..6).all(|face| self.sample(p, face).is_some_and(|s| s.behind > depth_m))
+        if !self.bounds_hold(p) {
+            return false;
+        }
+        let between = self.between(p);
+        let mut faces = 0..6;
+        faces.all(|face| {
+            let surface = self.sample(p, &between, face);
+            surface.is_some_and(|s| s.behind > depth_m)
+        })
     }
 
     fn bounds_hold<R: Real>(&self, p: Vec3<R>) -> bool {
@@ -151,13 +178,15 @@ impl DepthCube {
         if !self.bounds_hold(p) {
             return None;
         }
+        let between = self.between(p);
         let mut surfaces = [const { None }; 6];
         for (surface, face) in surfaces.iter_mut().zip(0..) {
-            *surface = Some(self.sample(p, face).filter(|s| s.behind > R::ZERO)?);
+            let found = self.sample(p, &between, face);
+            *surface = Some(found.filter(|s| s.behind > R::ZERO)?);
         }
         let mut choice = Choice::new(p, kept, reach);
         for (surface, face) in surfaces.into_iter().flatten().zip(0..) {
-            let normal = surface.normal;
+            let normal = surface.normal.unit_or(face_normal(face));
             let depth = match (self.push, self.sampling) {
                 (Push::Literal, _) => surface.along_axis,
                 (Push::Ratio, Sampling::Planes) => surface.behind,
@@ -184,42 +213,66 @@ impl DepthCube {
     /// still leads outside.
     fn nearer<R: Real>(&self, p: Vec3<R>, exit: Exit<R>) -> Exit<R> {
         let way = exit.normal * exit.depth;
-        let Some(surface) = self.sample(p + way, exit.face) else {
+        let end = p + way;
+        let Some(surface) = self.sample(end, &self.between(end), exit.face) else {
             return exit;
         };
-        let depth = surface.behind + surface.normal.dot(way);
+        let normal = surface.normal.unit_or(face_normal(exit.face));
+        let depth = surface.behind + normal.dot(way);
         if surface.hidden || depth <= R::ZERO || depth >= exit.depth {
             return exit;
         }
         Exit {
             depth,
-            normal: surface.normal,
+            normal,
             ..exit
         }
     }
 
+    /// Along each axis, which all faces but two share.
+    fn between<R: Real>(&self, p: Vec3<R>) -> [Between<R>; 3] {
+        let per_edge = R::of(f64::from(self.resolution));
+        let last = i64::from(self.resolution) - 1;
+        [0, 1, 2].map(|a| {
+            let span = self.span(a);
+            let mut place =
+                (axis(p, a) - R::of_f32(axis(self.low, a))) / span * per_edge - R::of(0.5);
+            if self.sampling == Sampling::Nearest {
+                place = (place + R::of(0.5)).floor();
+            }
+            let before = place.floor();
+            let after_share = place - before;
+            let texel = [0, 1].map(|more| (before.to_f64() as i64 + more).clamp(0, last));
+            Between {
+                texel: texel.map(|n| n as usize),
+                weight: [R::ONE - after_share, after_share],
+                off_m: texel.map(|n| (place - R::of(n as f64)) / per_edge * span),
+            }
+        })
+    }
+
+    /// Extent along an axis, in metres.
+    fn span<R: Real>(&self, a: u32) -> R {
+        R::of_f32(axis(self.high, a)) - R::of_f32(axis(self.low, a))
+    }
+
     /// A face's surface over a point, between its texels as `sampling` says; `None` outside the
     /// face's silhouette.
-    fn sample<R: Real>(&self, p: Vec3<R>, face: u32) -> Option<Surface<R>> {
+    fn sample<R: Real>(
+        &self,
+        p: Vec3<R>,
+        between: &[Between<R>; 3],
+        face: u32,
+    ) -> Option<Surface<R>> {
         let a = face / 2;
-        let span = |b: u32| R::of_f32(axis(self.high, b)) - R::of_f32(axis(self.low, b));
-        let per_edge = R::of(f64::from(self.resolution));
-        let place =
-            |b: u32| (axis(p, b) - R::of_f32(axis(self.low, b))) / span(b) * per_edge - R::of(0.5);
-        let (mut s, mut t) = (place(a + 1), place(a + 2));
-        if self.sampling == Sampling::Nearest {
-            let half = R::of(0.5);
-            (s, t) = ((s + half).floor(), (t + half).floor());
-        }
-        let (column, row) = (s.floor(), t.floor());
-        let (fs, ft) = (s - column, t - row);
+        let [across, along] = [a + 1, a + 2].map(|b| &between[(b % 3) as usize]);
+        let span: R = self.span(a);
         let below = if face & 1 == 0 {
             R::of_f32(axis(self.high, a)) - axis(p, a)
         } else {
             axis(p, a) - R::of_f32(axis(self.low, a))
         };
-        let last = i64::from(self.resolution) - 1;
-        let clamped = |n: R, more: i64| (n.to_f64() as i64 + more).clamp(0, last);
+        let per_edge = self.resolution as usize;
         let mut weight = R::ZERO;
         let mut hidden = R::ZERO;
         let mut along_axis = R::ZERO;
@@ -227,26 +280,22 @@ impl DepthCube {
         let mut normal = Vec3::ZERO;
         for corner in 0..4 {
             let (right, down) = (corner & 1, corner >> 1);
-            let w = (if right == 1 { fs } else { R::ONE - fs })
-                * (if down == 1 { ft } else { R::ONE - ft });
-            let (i, j) = (clamped(column, right), clamped(row, down));
-            let at = j as usize * self.resolution as usize + i as usize;
-            let [word, packed] =
-                self.texels[face as usize * (self.resolution * self.resolution) as usize + at];
+            let w = across.weight[right] * along.weight[down];
+            let row = face as usize * per_edge + along.texel[down];
+            let at = row * per_edge + across.texel[right];
+            let [word, _] = self.texels[at];
             if word & HIT == 0 {
                 if self.sampling == Sampling::Bilinear {
                     weight += w;
-                    along_axis += w * (below - span(a));
+                    along_axis += w * (below - span);
                 }
                 continue;
             }
-            let depth = R::of(f64::from(word & DEPTH_MASK) / DEPTH_STEPS) * span(a);
-            let n: Vec3<R> = unpack_normal(packed);
+            let depth = R::of(f64::from(word & DEPTH_MASK) / DEPTH_STEPS) * span;
+            let n: Vec3<R> = Vec3::of_f32(self.normals[at].to_f32());
             // From the texel's surface point to `p`, over the face.
-            let off_centre =
-                |b: u32, at: R, texel: i64| (at - R::of(texel as f64)) / per_edge * span(b);
             let sideways =
-                axis(n, a + 1) * off_centre(a + 1, s, i) + axis(n, a + 2) * off_centre(a + 2, t, j);
+                axis(n, a + 1) * across.off_m[right] + axis(n, a + 2) * along.off_m[down];
             weight += w;
             along_axis += w * (below - depth);
             distance += w * ((below - depth) * axis(n, a).abs() - sideways);
@@ -269,7 +318,7 @@ impl DepthCube {
                 _ => along_axis,
             },
             along_axis,
-            normal: normal.unit_or(face_normal(face)),
+            normal,
             hidden: hidden > R::of(HIDDEN_SHARE) * weight,
         })
     }

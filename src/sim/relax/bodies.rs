@@ -51,6 +51,7 @@ impl<'a, R: Real> Bodies<'a, R> {
     }
 
     /// False where a place is outside every part in reach.
+    #[inline(always)]
     pub fn may_hold(&self, node: Vec3<R>) -> bool {
         let mut posed = self.posed.iter();
         posed.any(|(touch, pose)| {
