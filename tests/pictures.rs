@@ -21,6 +21,8 @@ mod clumps;
 mod coats;
 #[path = "pictures/counted.rs"]
 mod counted;
+#[path = "pictures/light.rs"]
+mod light;
 #[path = "pictures/stones.rs"]
 mod stones;
 #[path = "pictures/waking.rs"]
@@ -59,6 +61,22 @@ const CHECKS: &[(&str, Check)] = &[
     ("coats_grow_outwards", coats::coats_grow_outwards),
     ("coats_grow_on_faces", coats::coats_grow_on_faces),
     ("no_coats_cost_nothing", coats::no_coats_cost_nothing),
+    (
+        "light_volumes_darken_what_sees_less_sky",
+        light::light_volumes_darken_what_sees_less_sky,
+    ),
+    (
+        "no_light_volumes_cost_nothing",
+        light::no_light_volumes_cost_nothing,
+    ),
+    (
+        "both_sides_of_clumps_are_lit",
+        light::both_sides_of_clumps_are_lit,
+    ),
+    (
+        "too_many_slices_are_refused",
+        light::too_many_slices_are_refused,
+    ),
     ("stones_go_back", stones::stones_go_back),
     ("stones_lie_where_shoved", stones::stones_lie_where_shoved),
     (

@@ -55,7 +55,8 @@ impl Occluders {
         }
         let mut hash = Hash64::default();
         take_in_ground(&mut hash, grid);
-        let fixed = (bodies.actors.values()).filter(|actor| matches!(actor.control, Control::Fixed));
+        let fixed =
+            (bodies.actors.values()).filter(|actor| matches!(actor.control, Control::Fixed));
         for piece in fixed.flat_map(|actor| &actor.pieces) {
             let Some(shape) = bodies.library.shapes().get(piece.shape as usize) else {
                 continue;
@@ -143,7 +144,8 @@ mod tests {
         Occluders::new(&bodies).expect("a ground")
     }
 
-    const BOX: &str = "(name: \"a\", shape: Box(size_m: (2, 2, 2)), position_m: (3, 1, 0), motion: Fixed)";
+    const BOX: &str =
+        "(name: \"a\", shape: Box(size_m: (2, 2, 2)), position_m: (3, 1, 0), motion: Fixed)";
     const BALL: &str = "(name: \"b\", shape: Ball(radius_m: 0.5), position_m: (-3, 0.5, 0))";
 
     #[test]

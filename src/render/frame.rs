@@ -159,7 +159,11 @@ impl Renderer {
     ///
     /// # Errors
     /// Volumes that the device cannot hold.
-    pub fn set_light(&mut self, gpu: &Gpu, texels: Option<&LightTexels>) -> Result<(), RenderError> {
+    pub fn set_light(
+        &mut self,
+        gpu: &Gpu,
+        texels: Option<&LightTexels>,
+    ) -> Result<(), RenderError> {
         self.groups.set_light(gpu, texels)
     }
 
@@ -168,10 +172,11 @@ impl Renderer {
     /// # Errors
     /// More slices than the device's textures have layers for.
     pub fn check_light(&self, gpu: &Gpu, slices: u32) -> Result<(), RenderError> {
-        check_layers(gpu, slices)
+        check_layers(slices, gpu.device.limits().max_texture_array_layers)
     }
 
-    /// Bytes of light volumes on the device: 29, a texel of each kind, where there is none.
+    /// Bytes of light volumes on the device. Where there is none, a texel of each kind for the bindings, 29
+    /// bytes: shaders look none of them up.
     pub fn light_bytes(&self) -> u64 {
         self.groups.light_bytes()
     }

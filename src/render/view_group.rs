@@ -158,7 +158,7 @@ impl ViewGroups {
 
     /// Bytes of the light volumes on the device; a texel of each kind where the scene has none.
     pub(super) fn light_bytes(&self) -> u64 {
-        self.light.bytes
+        self.light.bytes()
     }
 
     /// Groups of a layer without data of its own.

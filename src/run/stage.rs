@@ -15,7 +15,7 @@ use crate::sim::{Meadow, MeadowError};
 use crate::terrain::ColourMap;
 
 use super::engine::{Engine, EngineChoice};
-use super::light::{LightCache, StageLight};
+use super::light::{LightCache, LightNews, StageLight};
 use super::scenario::Outcome;
 use super::timeline::Timeline;
 
@@ -301,10 +301,17 @@ impl Stage {
         Ok(self.renderer.draw(gpu, &input, target, &mut self.timer)?)
     }
 
-    /// Light volumes of the scene; `None` where it does not ask for any. They are made on other threads
-    /// from the first picture on: until they are ready pictures are in plain light.
-    pub fn light(&mut self) -> Option<&mut StageLight> {
-        self.light.as_mut()
+    /// The share of the light volumes that is worked out, while they are in the making: on other threads,
+    /// from the first picture on. Until they are ready pictures are in plain light.
+    pub fn pending_light(&self) -> Option<f64> {
+        self.light.as_ref()?.pending_share()
+    }
+
+    /// What happened to the light volumes since the last call; nothing where the scene has none.
+    pub fn take_light_news(&mut self) -> Vec<LightNews> {
+        self.light
+            .as_mut()
+            .map_or_else(Vec::new, StageLight::take_news)
     }
 
     /// Waits for the light volumes under the present sun, and tells meanwhile what share of them is
@@ -318,8 +325,8 @@ impl Stage {
             return Ok(());
         };
         light.follow(gpu, &mut self.renderer, self.sun)?;
-        while light.is_pending() {
-            tell(light.done_share());
+        while let Some(share) = light.pending_share() {
+            tell(share);
             std::thread::sleep(LIGHT_LOOK);
             light.follow(gpu, &mut self.renderer, self.sun)?;
         }

@@ -5,6 +5,7 @@ mod billboards;
 mod coats;
 mod compare;
 mod cubes;
+mod light;
 mod meadows;
 mod passes;
 mod plants;
@@ -43,6 +44,7 @@ const CHECKS: &[(&str, Check)] = &[
         "ranges_of_many_tiles_are_equal",
         billboards::ranges_of_many_tiles_are_equal,
     ),
+    ("light_volumes_agree", light::lookups_agree),
     ("wind_poses_agree", plants::wind_poses_agree),
     (
         "poses_about_the_knee_agree",

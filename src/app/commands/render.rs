@@ -10,6 +10,7 @@ use super::outputs::ResultFile;
 use super::scene_file;
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
+use crate::app::light_up::light_up;
 use crate::app::progress::Progress;
 use crate::app::values::{density, number, whole};
 use crate::gpu::Gpu;
@@ -218,21 +219,6 @@ fn is_animation(file: &Path) -> Result<bool, Failure> {
             file.display()
         ))),
     }
-}
-
-/// Waits for the light volumes of a scene that asks for them, with a bar, and tells how they came.
-pub fn light_up(gpu: &Gpu, stage: &mut Stage) -> Result<(), Failure> {
-    if stage.light().is_none() {
-        return Ok(());
-    }
-    let progress = Progress::new("light volumes");
-    stage.finish_light(gpu, |share| progress.set(share))?;
-    drop(progress);
-    let news = stage.light().map(|light| light.take_news());
-    for line in news.unwrap_or_default() {
-        log::info!("{line}");
-    }
-    Ok(())
 }
 
 /// A stage that is photographed.

@@ -21,8 +21,7 @@ pub(super) fn half_bits(value: f32) -> u16 {
     (sign | rounded) as u16
 }
 
-/// What a half float stands for, exactly.
-#[cfg(test)]
+/// What a finite half float stands for, exactly.
 pub(super) fn of_half_bits(bits: u16) -> f32 {
     let sign = if bits & 0x8000 == 0 { 1.0 } else { -1.0 };
     let (exponent, fraction) = (i32::from(bits >> 10 & 31), f32::from(bits & 0x3ff));

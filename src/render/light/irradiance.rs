@@ -137,7 +137,8 @@ impl LightTexels {
         )
     }
 
-    pub(super) fn of_lights(visibility: &Visibility, lights: &[CellLight]) -> Self {
+    /// The volumes of cells with this light.
+    pub fn of_lights(visibility: &Visibility, lights: &[CellLight]) -> Self {
         let grid = &visibility.grid;
         let of_colour = |colour: usize| {
             (lights.iter()).map(move |light| light.irradiance[colour].map(half_bits))

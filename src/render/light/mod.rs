@@ -5,6 +5,7 @@
 //! directions   into which directions of the sky a cell looks
 //! visibility   what it sees there: rays, traced once and kept on disk by the caller
 //! irradiance   ambient occlusion, and irradiance from the sky of a moment
+//! lookup       the light at any place, as a shader finds it
 //! textures     both as 2D texture arrays; shader: `shaders/shared/volume_light.wgsl`
 //! ```
 
@@ -12,16 +13,16 @@ mod directions;
 mod grid;
 mod half;
 mod irradiance;
+mod lookup;
 mod textures;
 mod visibility;
 
 pub use directions::sky_directions;
 pub use grid::LightGrid;
 pub use irradiance::{CellLight, LightTexels, cell_lights};
-pub(super) use textures::{LightTextures, LightVolume, check_layers};
+pub use textures::LightTextures;
+pub(super) use textures::{LightVolume, check_layers};
 pub use visibility::{SightOf, TraceProgress, Visibility};
 
-#[cfg(test)]
-mod shader_tests;
 #[cfg(test)]
 mod tests;

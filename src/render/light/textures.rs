@@ -28,7 +28,7 @@ gpu_struct! {
 
 /// The volumes of a scene that has some; of one that has none, a texel of each kind for the bindings.
 #[derive(Debug)]
-pub(in crate::render) struct LightTextures {
+pub struct LightTextures {
     uniform: Buffer<LightVolume>,
     openness: wgpu::TextureView,
     irradiance: wgpu::TextureView,
@@ -37,12 +37,15 @@ pub(in crate::render) struct LightTextures {
     /// The uniform of an eye at the origin.
     base: LightVolume,
     corner_in_world: [f64; 2],
-    pub(in crate::render) bytes: u64,
+    bytes: u64,
 }
 
 impl LightTextures {
     /// A texel of each: nothing is looked up in them.
-    pub(in crate::render) fn none(gpu: &Gpu) -> Result<Self, GpuError> {
+    ///
+    /// # Errors
+    /// A device that is short of memory.
+    pub fn none(gpu: &Gpu) -> Result<Self, GpuError> {
         let texels = LightTexels {
             columns: [1, 1],
             slices: 1,
@@ -61,8 +64,8 @@ impl LightTextures {
 
     /// # Errors
     /// More slices than the device's textures have layers for; a device that is short of memory.
-    pub(in crate::render) fn new(gpu: &Gpu, texels: &LightTexels) -> Result<Self, RenderError> {
-        check_layers(gpu, texels.slices)?;
+    pub fn new(gpu: &Gpu, texels: &LightTexels) -> Result<Self, RenderError> {
+        check_layers(texels.slices, gpu.device.limits().max_texture_array_layers)?;
         Ok(Self::upload(gpu, texels)?)
     }
 
@@ -115,8 +118,16 @@ impl LightTextures {
         })
     }
 
+    /// Bytes of the textures on the device.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
     /// Writes where the volume is from this frame's eye; nothing where there is none.
-    pub(in crate::render) fn write(&self, gpu: &Gpu, view: &View) -> Result<(), GpuError> {
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn write(&self, gpu: &Gpu, view: &View) -> Result<(), GpuError> {
         if self.base.slices == 0 {
             return Ok(());
         }
@@ -129,7 +140,7 @@ impl LightTextures {
     }
 
     /// What a bind group layout says of [`LightTextures::resources`].
-    pub(in crate::render) fn bindings() -> [(ShaderStages, BindingType); 5] {
+    pub fn bindings() -> [(ShaderStages, BindingType); 5] {
         let texture = |view_dimension, filterable| BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Float { filterable },
             view_dimension,
@@ -142,7 +153,8 @@ impl LightTextures {
             .map(|binding| (ShaderStages::VERTEX_FRAGMENT, binding))
     }
 
-    pub(in crate::render) fn resources(&self) -> [wgpu::BindingResource<'_>; 5] {
+    /// The volumes for a bind group, in the order of the shader's bindings from 2 on.
+    pub fn resources(&self) -> [wgpu::BindingResource<'_>; 5] {
         [
             self.uniform.binding(),
             wgpu::BindingResource::TextureView(&self.openness),
@@ -154,9 +166,9 @@ impl LightTextures {
 }
 
 /// # Errors
-/// More slices than the device's textures have layers for.
-pub(in crate::render) fn check_layers(gpu: &Gpu, slices: u32) -> Result<(), RenderError> {
-    let (layers, limit) = (COLOURS * slices, gpu.device.limits().max_texture_array_layers);
+/// More slices than a device's textures have layers for; `limit` is its `max_texture_array_layers`.
+pub(in crate::render) fn check_layers(slices: u32, limit: u32) -> Result<(), RenderError> {
+    let layers = COLOURS * slices;
     if layers <= limit {
         return Ok(());
     }

@@ -130,7 +130,10 @@ mod tests {
             assert_eq!(folder(&[home]).as_deref(), Some("/home/a/.cache/sward"));
             assert_eq!(folder(&[home, xdg]).as_deref(), Some("/c/sward"));
             let relative = ("XDG_CACHE_HOME", "c");
-            assert_eq!(folder(&[home, relative]).as_deref(), Some("/home/a/.cache/sward"));
+            assert_eq!(
+                folder(&[home, relative]).as_deref(),
+                Some("/home/a/.cache/sward")
+            );
         }
     }
 }

@@ -68,7 +68,7 @@ impl LightTask {
         let mut notices = Vec::new();
         let (visibility, source) = match &self.known {
             Some(known) => (Arc::clone(known), LightSource::Known),
-            None => self.from_cache(&mut notices).map_or_else(
+            None => self.cached(&mut notices).map_or_else(
                 || {
                     let traced = Arc::new(self.trace(progress)?);
                     self.keep(&traced, &mut notices);
@@ -92,7 +92,7 @@ impl LightTask {
         Visibility::trace(self.grid.clone(), rays, seed, &sight, progress)
     }
 
-    fn from_cache(&self, notices: &mut Vec<String>) -> Option<Visibility> {
+    fn cached(&self, notices: &mut Vec<String>) -> Option<Visibility> {
         let (key, LightVolumes { rays, seed, .. }) = (self.key(), self.settings);
         let most = Visibility::file_bytes(&self.grid, rays);
         let read = match self.cache.read(key, most) {

@@ -7,4 +7,7 @@ mod stage_light;
 
 pub use cache::{Found, LightCache};
 pub use job::{LightJob, LightMade, LightSource, LightTask};
-pub use stage_light::StageLight;
+pub use stage_light::{LightNews, StageLight};
+
+#[cfg(test)]
+mod tests;

@@ -11,6 +11,15 @@ use crate::render::{RenderError, Renderer, Sun};
 use crate::scene::LightVolumes;
 use crate::sim::Meadow;
 
+/// What a person may want to know of light volumes, in a sentence.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum LightNews {
+    /// How they come along.
+    Told(String),
+    /// What went wrong.
+    Trouble(String),
+}
+
 /// Starts the making of volumes, takes them when they are ready, and makes them anew where the sun moves.
 #[derive(Debug)]
 pub struct StageLight {
@@ -24,7 +33,7 @@ pub struct StageLight {
     sun: Option<Sun>,
     /// Volumes could not be made, so that they are not asked for again.
     has_failed: bool,
-    news: Vec<String>,
+    news: Vec<LightNews>,
 }
 
 impl StageLight {
@@ -74,15 +83,15 @@ impl StageLight {
                 }
                 None => {
                     self.has_failed = true;
-                    let text = "the light volumes could not be made: plain light stays";
-                    self.news.push(text.to_owned());
+                    let text = "the light volumes could not be made: the light stays as it is";
+                    self.news.push(LightNews::Trouble(text.to_owned()));
                 }
             }
         }
         if self.job.is_none() && self.sun != Some(sun) && !self.has_failed {
             if self.visibility.is_none() {
                 let text = "light volumes are worked out: plain light until then";
-                self.news.push(text.to_owned());
+                self.news.push(LightNews::Told(text.to_owned()));
             }
             self.sun = Some(sun);
             self.job = Some(LightJob::start(self.task(sun)));
@@ -102,31 +111,27 @@ impl StageLight {
     }
 
     fn tell(&mut self, made: &LightMade) {
-        self.news.extend(made.notices.iter().cloned());
+        let notices = made.notices.iter().cloned();
+        self.news.extend(notices.map(LightNews::Trouble));
         let how = match made.source {
             LightSource::Known => return,
             LightSource::Cache => "read from the cache",
             LightSource::Traced => "worked out",
         };
-        self.news.push(format!(
+        self.news.push(LightNews::Told(format!(
             "light volumes: {} cells {how} in {:.2} s",
             self.grid.cells(),
             made.seconds
-        ));
+        )));
     }
 
-    /// Whether volumes are in the making.
-    pub fn is_pending(&self) -> bool {
-        self.job.is_some()
-    }
-
-    /// The share of the rays that are traced, 0…1.
-    pub fn done_share(&self) -> f64 {
-        self.job.as_ref().map_or(1.0, LightJob::done_share)
+    /// The share of the rays that are traced, 0…1, where volumes are in the making.
+    pub fn pending_share(&self) -> Option<f64> {
+        self.job.as_ref().map(LightJob::done_share)
     }
 
     /// What happened since the last call, in sentences.
-    pub fn take_news(&mut self) -> Vec<String> {
+    pub fn take_news(&mut self) -> Vec<LightNews> {
         std::mem::take(&mut self.news)
     }
 }
