@@ -145,7 +145,7 @@ fn numbers_out_of_range() {
         "(light: (ray: 64))" => "1:10" "light.ray": "did you mean rays?";
         "(terrain: (ground: Flat(size_m: (200, 1))), light: (cell_m: 0.05))" => "1:61" "light.cell_m": "4001 by 21 columns", "limit of 2048";
         "(terrain: (ground: Flat(size_m: (100, 100))), light: (cell_m: 0.1))" => "1:63" "light.cell_m": "6012006 cells in 6 slices", "limit of 1048576";
-        "(terrain: (ground: Flat(size_m: (100, 100))), light: (cell_m: 0.25, rays: 600))" => "1:75" "light.rays": "is 600", "962406 cells", "limit of 536870912";
+        "(terrain: (ground: Flat(size_m: (100, 100))), light: (cell_m: 0.25, rays: 600))" => "1:75" "light.rays": "is 600", "964806 cells", "limit of 536870912";
         "(billboards: (extent: \"none.png\"))" => "1:23" "billboards.extent": "none.png";
         "(terrain: (base_map: \"none.png\"))" => "1:22" "terrain.base_map": "none.png";
         "(terrain: (lush_rgb: (0, 2, 0)))" => "1:26" "terrain.lush_rgb[1]": "is 2", "0 to 1";

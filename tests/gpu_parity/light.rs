@@ -35,7 +35,7 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
 "#;
 
 const SCENE: &str = "(terrain: (ground: Rolling(size_m: (9, 7), amplitude_m: 1, wavelength_m: 5)), \
-    light: (cell_m: 0.7, height_m: 1.5, slices: 4, rays: 128), \
+    light: Some((cell_m: 0.7, height_m: 1.5, slices: 4, rays: 128)), \
     bodies: [(name: \"wall\", shape: Box(size_m: (3, 2, 0.5)), position_m: (1, 0.5, 0.3), motion: Fixed)])";
 
 fn texels() -> Result<LightTexels, Failed> {

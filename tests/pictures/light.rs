@@ -11,10 +11,10 @@ use super::{ALL, Shown, Stage, WHOLE, difference, hold, mean};
 
 /// A wall behind the place that `ALL` looks at, whose shadow falls away from the eye.
 const WALL: &str = "(terrain: (ground: Flat(size_m: (8, 8))), \
-    light: (cell_m: 0.25, height_m: 2, slices: 6, rays: 128), \
+    light: Some((cell_m: 0.25, height_m: 2, slices: 6, rays: 128)), \
     bodies: [(name: \"wall\", shape: Box(size_m: (7, 5, 0.5)), position_m: (0, 2.5, -1), motion: Fixed)])";
 const CLUMPS: &str = "(terrain: (ground: Flat(size_m: (8, 8))), grass: (species: []), \
-    light: (cell_m: 1, slices: 2, rays: 64), billboards: (density_per_m2: 30))";
+    light: Some((cell_m: 1, slices: 2, rays: 64)), billboards: Some((density_per_m2: 30)))";
 /// Over the wall's foot, from the side of the eye.
 const FRONT: Sun = Sun {
     elevation_deg: 50.0,

@@ -21,7 +21,7 @@ fn scene(keys: &str) -> Scene {
     ron::from_str(&text).expect("a scene")
 }
 
-const LIGHT: &str = "light: (cell_m: 0.5, height_m: 2, slices: 5, rays: 256)";
+const LIGHT: &str = "light: Some((cell_m: 0.5, height_m: 2, slices: 5, rays: 256))";
 
 fn seen(scene: &Scene, sight: &SightOf<'_>) -> Visibility {
     let light = scene.light.expect("the key");

@@ -42,7 +42,7 @@ impl Drop for Folder {
 /// The light of a small scene with a wall at an x.
 fn task(wall_x: f32, cache: LightCache) -> LightTask {
     let text = format!(
-        "(terrain: (ground: Flat(size_m: (4, 4))), light: (cell_m: 1, slices: 3, rays: 64), \
+        "(terrain: (ground: Flat(size_m: (4, 4))), light: Some((cell_m: 1, slices: 3, rays: 64)), \
          bodies: [(name: \"wall\", shape: Box(size_m: (0.4, 2, 3)), position_m: ({wall_x}, 1, 0), \
          motion: Fixed)])"
     );
