@@ -1,7 +1,6 @@
 //! A scene that is simulated and drawn: what a window, a picture and an embedding program share.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use crate::bodies::{Bodies, BodyError};
 use crate::gpu::{Gpu, GpuError, GrassKernels, PassTimer, TickError};
@@ -14,16 +13,18 @@ use crate::scene::{Action, Camera, Likes, LoadedScene};
 use crate::sim::{Meadow, MeadowError};
 use crate::terrain::ColourMap;
 
+mod light;
+
+use light::light_of;
+
 use super::engine::{Engine, EngineChoice};
-use super::light::{LightCache, LightNews, StageLight};
+use super::light::StageLight;
 use super::scenario::Outcome;
 use super::timeline::Timeline;
 
 /// Longest time that one displayed frame may add, in seconds: a window that was hidden does not
 /// have to catch up.
 const LONGEST_FRAME_S: f64 = 0.25;
-/// How often a wait for light volumes looks whether they are ready.
-const LIGHT_LOOK: Duration = Duration::from_millis(5);
 /// Passes of a frame that are timed.
 const DRAWN_PASSES: usize = 12;
 
@@ -301,38 +302,6 @@ impl Stage {
         Ok(self.renderer.draw(gpu, &input, target, &mut self.timer)?)
     }
 
-    /// The share of the light volumes that is worked out, while they are in the making: on other threads,
-    /// from the first picture on. Until they are ready pictures are in plain light.
-    pub fn pending_light(&self) -> Option<f64> {
-        self.light.as_ref()?.pending_share()
-    }
-
-    /// What happened to the light volumes since the last call; nothing where the scene has none.
-    pub fn take_light_news(&mut self) -> Vec<LightNews> {
-        self.light
-            .as_mut()
-            .map_or_else(Vec::new, StageLight::take_news)
-    }
-
-    /// Waits for the light volumes under the present sun, and tells meanwhile what share of them is
-    /// there. A scene that does not ask for any costs nothing.
-    ///
-    /// # Errors
-    ///
-    /// Volumes that the device cannot hold.
-    pub fn finish_light(&mut self, gpu: &Gpu, mut tell: impl FnMut(f64)) -> Result<(), StageError> {
-        let Some(light) = &mut self.light else {
-            return Ok(());
-        };
-        light.follow(gpu, &mut self.renderer, self.sun)?;
-        while let Some(share) = light.pending_share() {
-            tell(share);
-            std::thread::sleep(LIGHT_LOOK);
-            light.follow(gpu, &mut self.renderer, self.sun)?;
-        }
-        Ok(())
-    }
-
     /// What the last picture drew of the plants.
     pub fn blade_counts(&self) -> BladeCounts {
         self.renderer.blade_counts()
@@ -374,19 +343,6 @@ fn lay_out(
         Engine::cpu()
     };
     Ok((meadow, engine))
-}
-
-/// Light volumes as the scene asks for them, if the device can hold them.
-fn light_of(
-    gpu: &Gpu,
-    renderer: &Renderer,
-    meadow: &Meadow,
-) -> Result<Option<StageLight>, StageError> {
-    let light = StageLight::of(meadow, LightCache::of_platform()).map_err(StageError::Light)?;
-    if let Some(light) = &light {
-        renderer.check_light(gpu, light.slices())?;
-    }
-    Ok(light)
 }
 
 fn show(
