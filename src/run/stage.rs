@@ -321,7 +321,7 @@ fn lay_out(
     let mut meadow = Meadow::new(loaded.scene.clone(), &loaded.assets)?;
     let engine = if choice == EngineChoice::Reference {
         Engine::reference(&mut meadow)
-    } else if choice.is_gpu_on(gpu) && !choice.falls_back(&meadow.scene) {
+    } else if choice.is_gpu_on(gpu) {
         Engine::gpu(gpu, kernels, &mut meadow)?
     } else {
         Engine::cpu()
