@@ -8,8 +8,8 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use sward::base::Vec3;
 use sward::gpu::{Gpu, PassTimer};
 use sward::render::{
-    ActiveNodes, BladeDetail, BladesInput, Exposure, FrameInput, GroundLook, Picture,
-    PictureTarget, Renderer, Sun, TerrainDetail, View, bodies_at,
+    ActiveBillboards, ActiveNodes, BladeDetail, BladesInput, Exposure, FrameInput, GroundLook,
+    Picture, PictureTarget, Renderer, Sun, TerrainDetail, View, bodies_at,
 };
 use sward::scene::Scene;
 use sward::sim::{Grass, Meadow, tick};
@@ -74,6 +74,7 @@ const SIZE: [u32; 2] = [192, 128];
 struct Stage {
     meadow: Meadow,
     nodes: ActiveNodes,
+    billboards: ActiveBillboards,
     renderer: Renderer,
     target: PictureTarget,
 }
@@ -88,10 +89,13 @@ impl Stage {
         }
         let mut nodes = ActiveNodes::new(gpu)?;
         nodes.copy(gpu, &meadow, &grass)?;
+        let mut billboards = ActiveBillboards::new(gpu)?;
+        billboards.copy(gpu, &meadow, &grass)?;
         let renderer = Renderer::new(gpu, PictureTarget::FORMAT, SIZE)?;
         let mut stage = Self {
             meadow,
             nodes,
+            billboards,
             renderer,
             target: PictureTarget::new(gpu, SIZE)?,
         };
@@ -125,6 +129,7 @@ impl Stage {
                 wind: &self.meadow.work.wind,
                 active: if shown.active { active } else { &[] },
                 active_nodes: &self.nodes.nodes,
+                billboards: shown.active.then(|| self.billboards.drawn()),
                 detail: BladeDetail {
                     full_m: shown.full_m,
                     reach_m: 40.0,

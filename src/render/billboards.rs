@@ -1,5 +1,6 @@
-//! Billboards: quads that stand for clumps of grass, drawn straight from the records that the device laid
-//! out (O09 section 6). Shader: `shaders/billboards.wgsl`.
+//! Billboards: quads that stand for clumps of grass (O09 section 6). In tiles at rest they are drawn straight
+//! from the records that the device laid out (pass RU), in tiles that are awake from the nodes of their
+//! refined forms (pass RA). Shader: `shaders/billboards.wgsl`.
 //!
 //! Everything here lives as long as a scene has billboards: one without them has none of it. Per frame the
 //! processor lists runs of tiles in view, near to far, and nothing per billboard.
@@ -15,8 +16,9 @@ use crate::field::{Field, TileId};
 use crate::gpu::billboard_place::{BillboardPlacing, BillboardRecord};
 use crate::gpu::{Buffer, FieldBuffers, Gpu, GpuError};
 use crate::gpu_struct;
-use crate::scene::ClumpKind;
 
+use super::active_billboards::BillboardNodes;
+use super::billboard_surface::{SurfaceTap, taps, triangles};
 use super::blade_tiles::Size;
 use super::camera::View;
 use super::canopy::Canopy;
@@ -37,7 +39,9 @@ gpu_struct! {
         cover: f32,
         reach_m: f32,
         samples: u32,
-        spare_a: u32,
+        spare: u32,
+        nodes: [u32; 2],
+        steps: [u32; 2],
         spare_b: [u32; 2],
         tints: [[f32; 4]; MAX_CLUMPS],
     }
@@ -47,9 +51,29 @@ gpu_struct! {
     /// Twin of `BillboardTile` in the shader.
     pub(super) struct BillboardTile {
         anchor_from_eye: [f32; 3],
-        spare: u32,
+        first: u32,
         anchor: [u32; 2],
-        spare_b: [u32; 2],
+        nodes_at: u32,
+        spare: u32,
+    }
+}
+
+/// The two forms of a billboard, each with a pass of its own.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum BillboardForm {
+    /// Of tiles at rest.
+    Quad,
+    /// Of tiles that are awake.
+    Refined,
+}
+
+impl BillboardForm {
+    /// The name under which its pass is timed.
+    pub(super) fn pass(self) -> &'static str {
+        match self {
+            Self::Quad => "billboards RU",
+            Self::Refined => "billboards RA",
+        }
     }
 }
 
@@ -58,25 +82,69 @@ gpu_struct! {
 pub struct BillboardCounts {
     /// Tiles in view that have some.
     pub tiles: u64,
+    /// Those of them that are awake, drawn from the nodes of refined forms.
+    pub refined_tiles: u64,
     pub billboards: u64,
+    /// Those of them in tiles that are awake.
+    pub refined: u64,
     /// Draw calls: runs of consecutive tiles.
     pub draws: u64,
-    /// Bytes on the device: records, tiles, and pictures with their mip levels.
+    /// Bytes on the device: records, tiles and the refined surface's tables; and pictures with their mip
+    /// levels. Nodes of refined forms belong to the engine.
     pub state_bytes: u64,
     pub picture_bytes: u64,
+}
+
+/// What all billboards of a scene are drawn from, but the nodes of a frame.
+#[derive(Debug)]
+struct Sources {
+    layout: wgpu::BindGroupLayout,
+    look: Buffer<BillboardLook>,
+    records: Buffer<BillboardRecord>,
+    tiles: Buffer<BillboardTile>,
+    colour: GroundTexture,
+    textures: ClumpTextures,
+    taps: Buffer<SurfaceTap>,
+}
+
+impl Sources {
+    fn group(&self, gpu: &Gpu, nodes: &Buffer<[f32; 4]>) -> wgpu::BindGroup {
+        bind_group(
+            gpu,
+            "billboards",
+            &self.layout,
+            &[
+                self.look.binding(),
+                self.records.binding(),
+                self.tiles.binding(),
+                wgpu::BindingResource::TextureView(&self.colour.view),
+                wgpu::BindingResource::Sampler(&self.colour.sampler),
+                wgpu::BindingResource::TextureView(&self.textures.view),
+                wgpu::BindingResource::Sampler(&self.textures.sampler),
+                nodes.binding(),
+                self.taps.binding(),
+            ],
+        )
+    }
 }
 
 /// Draws the billboards of a scene that has some.
 #[derive(Debug)]
 pub(super) struct BillboardsLayer {
-    pipeline: wgpu::RenderPipeline,
+    quads: wgpu::RenderPipeline,
+    refined: wgpu::RenderPipeline,
     field: Arc<BillboardField>,
     buffers: FieldBuffers,
-    look: Buffer<BillboardLook>,
-    tiles: Buffer<BillboardTile>,
-    group: wgpu::BindGroup,
+    sources: Sources,
+    /// Corners of a refined form's triangles.
+    triangles: Buffer<u32>,
+    /// What is bound where no tile is awake.
+    no_nodes: Buffer<[f32; 4]>,
+    /// The nodes of the last frame, and what binds them.
+    group: (wgpu::Buffer, wgpu::BindGroup),
     base: BillboardLook,
-    runs: Vec<Range<u32>>,
+    quad_runs: Vec<Range<u32>>,
+    refined_runs: Vec<Range<u32>>,
     pub(super) counts: BillboardCounts,
 }
 
@@ -99,52 +167,62 @@ impl BillboardsLayer {
         let Some(placed) = BillboardPlacing::new(gpu)?.lay_out(gpu, field)? else {
             return Ok(None);
         };
-        let layout = layout(gpu);
-        let textures = ClumpTextures::new(gpu, &billboards.clumps)?;
         let storage = BufferUsages::STORAGE;
-        let look = Buffer::new(gpu, "look of billboards", 1, BufferUsages::UNIFORM)?;
-        let tiles = Buffer::new(gpu, "tiles of billboards", placed.tiles as usize, storage)?;
-        let group = bind_group(
+        let subdivision = billboards.draw_subdivision;
+        let drawn: Vec<SurfaceTap> = (billboards.nodes.iter())
+            .flat_map(|&nodes| taps(nodes, subdivision))
+            .collect();
+        let base = look_of(field, billboards, colour, samples);
+        let sources = Sources {
+            layout: layout(gpu),
+            look: Buffer::new(gpu, "look of billboards", 1, BufferUsages::UNIFORM)?,
+            tiles: Buffer::new(gpu, "tiles of billboards", placed.tiles as usize, storage)?,
+            records: placed.records,
+            colour: colour.clone(),
+            textures: ClumpTextures::new(gpu, &billboards.clumps)?,
+            taps: Buffer::with(gpu, "surfaces of billboards", &drawn, storage)?,
+        };
+        let corners = triangles(base.steps);
+        let triangles = Buffer::with(
             gpu,
-            "billboards",
-            &layout,
-            &[
-                look.binding(),
-                placed.records.binding(),
-                tiles.binding(),
-                wgpu::BindingResource::TextureView(&colour.view),
-                wgpu::BindingResource::Sampler(&colour.sampler),
-                wgpu::BindingResource::TextureView(&textures.view),
-                wgpu::BindingResource::Sampler(&textures.sampler),
-            ],
-        );
+            "triangles of billboards",
+            &corners,
+            BufferUsages::INDEX,
+        )?;
         let counts = BillboardCounts {
             state_bytes: u64::from(placed.count) * size_of::<BillboardRecord>() as u64
-                + u64::from(placed.tiles) * size_of::<BillboardTile>() as u64,
-            picture_bytes: textures.bytes,
+                + u64::from(placed.tiles) * size_of::<BillboardTile>() as u64
+                + size_of_val(&drawn[..]) as u64
+                + size_of_val(&corners[..]) as u64,
+            picture_bytes: sources.textures.bytes,
             ..BillboardCounts::default()
         };
+        let pipeline = |vertex| pipeline(gpu, groups, &sources.layout, samples, vertex);
+        let no_nodes = Buffer::new(gpu, "no nodes of billboards", 1, storage)?;
         Ok(Some(Self {
-            pipeline: pipeline(gpu, groups, &layout, samples)?,
+            quads: pipeline("quad_vertex")?,
+            refined: pipeline("refined_vertex")?,
             field: Arc::clone(billboards),
             buffers: buffers.clone(),
-            base: look_of(field, &billboards.clumps, colour, samples),
-            look,
-            tiles,
-            group,
-            runs: Vec::new(),
+            group: (no_nodes.raw.clone(), sources.group(gpu, &no_nodes)),
+            sources,
+            triangles,
+            no_nodes,
+            base,
+            quad_runs: Vec::new(),
+            refined_runs: Vec::new(),
             counts,
         }))
     }
 
     /// Leaves the billboards out of the next frame.
     pub(super) fn clear(&mut self) {
-        self.runs.clear();
+        self.quad_runs.clear();
+        self.refined_runs.clear();
         self.counts = BillboardCounts {
-            tiles: 0,
-            billboards: 0,
-            draws: 0,
-            ..self.counts
+            state_bytes: self.counts.state_bytes,
+            picture_bytes: self.counts.picture_bytes,
+            ..BillboardCounts::default()
         };
     }
 
@@ -167,46 +245,111 @@ impl BillboardsLayer {
             reach_m,
             ..self.base
         };
-        self.look.write(gpu, 0, &[look])?;
+        self.sources.look.write(gpu, 0, &[look])?;
+        let nodes = blades
+            .billboards
+            .map_or(&self.no_nodes, |active| active.nodes);
+        if self.group.0 != nodes.raw {
+            self.group = (nodes.raw.clone(), self.sources.group(gpu, nodes));
+        }
         let margin_m = (2.0 * field.grid.tile_m()) + self.field.reach_m;
         let viewpoint = view.viewpoint(picture.aspect(), picture.rows);
         let mut seen = field.tiles_in_view(&viewpoint, reach_m + margin_m);
         seen.retain(|&tile| !self.field.range(tile).is_empty());
         seen.sort_unstable();
         self.counts.tiles = seen.len() as u64;
-        let mut runs: Vec<(f64, Range<u32>)> = Vec::new();
-        for run in seen.chunk_by(|a, b| a + 1 == *b) {
+        let seen: Vec<(TileId, Option<u32>)> = (seen.into_iter())
+            .map(|tile| (tile, nodes_of(blades.billboards, tile)))
+            .collect();
+        let (mut quads, mut refined) = (Vec::new(), Vec::new());
+        let in_one = |a: &(TileId, Option<u32>), b: &(TileId, Option<u32>)| {
+            a.0 + 1 == b.0 && a.1.is_some() == b.1.is_some()
+        };
+        for run in seen.chunk_by(in_one) {
             let places: Vec<BillboardTile> = run
                 .iter()
-                .map(|&tile| place_of(field, view, tile))
+                .map(|&(tile, nodes_at)| self.place_of(field, view, tile, nodes_at))
                 .collect();
-            self.tiles.write(gpu, run[0] as usize, &places)?;
-            let first = self.field.ranges[run[0] as usize];
-            let end = self.field.ranges[run[run.len() - 1] as usize + 1];
-            self.counts.billboards += u64::from(end - first);
-            runs.push((nearest_m(&places), first..end));
+            let ((first, nodes_at), (last, _)) = (run[0], run[run.len() - 1]);
+            self.sources.tiles.write(gpu, first as usize, &places)?;
+            let all = self.field.ranges[first as usize]..self.field.ranges[last as usize + 1];
+            let count = u64::from(all.end - all.start);
+            self.counts.billboards += count;
+            let run_at = (nearest_m(&places), all);
+            if nodes_at.is_some() {
+                self.counts.refined_tiles += places.len() as u64;
+                self.counts.refined += count;
+                refined.push(run_at);
+            } else {
+                quads.push(run_at);
+            }
         }
-        // Near to far, so that what is hidden is not shaded.
-        runs.sort_by(|a, b| a.0.total_cmp(&b.0));
-        self.counts.draws = runs.len() as u64;
-        self.runs = runs.into_iter().map(|(_, run)| run).collect();
+        self.counts.draws = (quads.len() + refined.len()) as u64;
+        self.quad_runs = near_to_far(quads);
+        self.refined_runs = near_to_far(refined);
         Ok(())
     }
 
-    /// Whether the next frame shows any.
-    pub(super) fn is_empty(&self) -> bool {
-        self.runs.is_empty()
-    }
-
-    /// Records the draws.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
-        pass.set_bind_group(3, &self.group, &[]);
-        for run in &self.runs {
-            pass.draw(0..6, run.clone());
+    fn place_of(
+        &self,
+        field: &Field,
+        view: &View,
+        tile: TileId,
+        nodes_at: Option<u32>,
+    ) -> BillboardTile {
+        let anchor = field.grid.anchor_of(tile, &field.ground);
+        let origin = Vec3::of(field.grid.anchor_in_world(&anchor, &field.ground));
+        BillboardTile {
+            anchor_from_eye: view.from_eye(origin),
+            first: self.field.ranges[tile as usize],
+            anchor: anchor.index,
+            nodes_at: nodes_at.unwrap_or(0),
+            spare: 0,
         }
     }
+
+    /// Whether the next frame shows some of a form.
+    pub(super) fn shows(&self, form: BillboardForm) -> bool {
+        match form {
+            BillboardForm::Quad => !self.quad_runs.is_empty(),
+            BillboardForm::Refined => !self.refined_runs.is_empty(),
+        }
+    }
+
+    /// Records the draws of a form.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, form: BillboardForm) {
+        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
+        pass.set_bind_group(3, &self.group.1, &[]);
+        match form {
+            BillboardForm::Quad => {
+                pass.set_pipeline(&self.quads);
+                for run in &self.quad_runs {
+                    pass.draw(0..6, run.clone());
+                }
+            }
+            BillboardForm::Refined => {
+                pass.set_pipeline(&self.refined);
+                let corners = self.triangles.raw.slice(..);
+                pass.set_index_buffer(corners, wgpu::IndexFormat::Uint32);
+                for run in &self.refined_runs {
+                    pass.draw_indexed(0..self.triangles.len() as u32, 0, run.clone());
+                }
+            }
+        }
+    }
+}
+
+/// Where the nodes of a tile that is awake begin.
+fn nodes_of(active: Option<BillboardNodes<'_>>, tile: TileId) -> Option<u32> {
+    let tiles = active?.tiles;
+    let found = tiles.binary_search_by_key(&tile, |&(id, _)| id).ok()?;
+    Some(tiles[found].1)
+}
+
+/// Runs by their distances, so that what is hidden is not shaded.
+fn near_to_far(mut runs: Vec<(f64, Range<u32>)>) -> Vec<Range<u32>> {
+    runs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    runs.into_iter().map(|(_, run)| run).collect()
 }
 
 fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
@@ -227,6 +370,8 @@ fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
             (vertex, SAMPLER),
             (fragment, pictures),
             (fragment, SAMPLER),
+            (vertex, READ_STORAGE),
+            (vertex, READ_STORAGE),
         ],
     )
 }
@@ -236,13 +381,14 @@ fn pipeline(
     groups: &ViewGroups,
     layout: &wgpu::BindGroupLayout,
     samples: u32,
+    vertex: &str,
 ) -> Result<wgpu::RenderPipeline, GpuError> {
     let field_layout = FieldBuffers::layout(gpu);
     let mut used = groups.lit(layout);
     used[0] = Some(&field_layout);
     Drawing {
         shader: "billboards.wgsl",
-        vertex: "billboard_vertex",
+        vertex,
         fragment: "billboard_fragment",
         groups: used,
         samples,
@@ -254,12 +400,12 @@ fn pipeline(
 
 fn look_of(
     field: &Field,
-    clumps: &[ClumpKind],
+    billboards: &BillboardField,
     colour: &GroundTexture,
     samples: u32,
 ) -> BillboardLook {
     let mut tints = [[1.0; 4]; MAX_CLUMPS];
-    for (place, kind) in tints.iter_mut().zip(clumps) {
+    for (place, kind) in tints.iter_mut().zip(&billboards.clumps) {
         place[..3].copy_from_slice(&kind.tint_rgb);
     }
     BillboardLook {
@@ -267,20 +413,11 @@ fn look_of(
         cover: Canopy::of(field).cover,
         reach_m: 0.0,
         samples,
-        spare_a: 0,
+        spare: 0,
+        nodes: billboards.nodes,
+        steps: (billboards.nodes).map(|nodes| (nodes - 1) * billboards.draw_subdivision),
         spare_b: [0; 2],
         tints,
-    }
-}
-
-fn place_of(field: &Field, view: &View, tile: TileId) -> BillboardTile {
-    let anchor = field.grid.anchor_of(tile, &field.ground);
-    let origin = Vec3::of(field.grid.anchor_in_world(&anchor, &field.ground));
-    BillboardTile {
-        anchor_from_eye: view.from_eye(origin),
-        spare: 0,
-        anchor: anchor.index,
-        spare_b: [0; 2],
     }
 }
 

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use crate::bodies::Bodies;
 use crate::gpu::{Gpu, GpuError, GrassKernels, PassTimer, TickError};
 use crate::render::{
-    ActiveNodes, BladeCounts, BladeDetail, BladesInput, Exposure, FrameInput, GroundLook,
-    RenderError, Renderer, Sun, View, active_slabs, bodies_at, scene_view, tile_marks,
+    ActiveBillboards, ActiveNodes, BladeCounts, BladeDetail, BladesInput, Exposure, FrameInput,
+    GroundLook, RenderError, Renderer, Sun, View, active_slabs, bodies_at, scene_view, tile_marks,
 };
 use crate::scene::assets::Assets;
 use crate::scene::{Action, Camera, Likes, LoadedScene};
@@ -30,6 +30,7 @@ pub struct Stage {
     engine: Engine,
     /// What the cpu engine's grass is drawn from.
     nodes: ActiveNodes,
+    billboards: ActiveBillboards,
     renderer: Renderer,
     kernels: GrassKernels,
     timer: PassTimer,
@@ -108,6 +109,7 @@ impl Stage {
         show(gpu, &mut renderer, &meadow, &loaded.assets)?;
         Ok(Self {
             nodes: ActiveNodes::new(gpu)?,
+            billboards: ActiveBillboards::new(gpu)?,
             timer: PassTimer::new(gpu, DRAWN_PASSES),
             timeline: new_timeline(&meadow),
             shapes: known_shapes(&meadow.bodies),
@@ -253,8 +255,14 @@ impl Stage {
         self.take_in_shapes(gpu)?;
         let meadow = &self.meadow;
         match &mut self.engine {
-            Engine::Cpu(grass) => self.nodes.copy(gpu, meadow, grass)?,
-            Engine::Reference(grass) => self.nodes.copy(gpu, meadow, grass.as_ref())?,
+            Engine::Cpu(grass) => {
+                self.nodes.copy(gpu, meadow, grass)?;
+                self.billboards.copy(gpu, meadow, grass)?;
+            }
+            Engine::Reference(grass) => {
+                self.nodes.copy(gpu, meadow, grass.as_ref())?;
+                self.billboards.copy(gpu, meadow, grass.as_ref())?;
+            }
             Engine::Gpu(engine) => engine.grass.recover()?,
         }
         let slabs = active_slabs(meadow);
@@ -278,6 +286,7 @@ impl Stage {
                 wind: &meadow.work.wind,
                 active,
                 active_nodes,
+                billboards: Some(self.billboards.drawn()),
                 detail: self.detail,
             }),
             marks: &marks,
