@@ -21,6 +21,8 @@ mod clumps;
 mod coats;
 #[path = "pictures/counted.rs"]
 mod counted;
+#[path = "pictures/refined.rs"]
+mod refined;
 #[path = "pictures/stones.rs"]
 mod stones;
 #[path = "pictures/waking.rs"]
@@ -56,6 +58,16 @@ const CHECKS: &[(&str, Check)] = &[
     ),
     ("clumps_are_drawn", clumps::clumps_are_drawn),
     ("no_clumps_cost_nothing", clumps::no_clumps_cost_nothing),
+    ("waking_changes_no_clump", refined::waking_changes_no_clump),
+    (
+        "a_clump_that_is_back_is_its_quad",
+        refined::a_clump_that_is_back_is_its_quad,
+    ),
+    ("pressed_clumps_show", refined::pressed_clumps_show),
+    (
+        "hidden_clumps_change_nothing",
+        refined::hidden_clumps_change_nothing,
+    ),
     ("coats_grow_outwards", coats::coats_grow_outwards),
     ("coats_grow_on_faces", coats::coats_grow_on_faces),
     ("no_coats_cost_nothing", coats::no_coats_cost_nothing),
@@ -135,6 +147,7 @@ impl Stage {
                     reach_m: 40.0,
                     tuft: 1,
                     shadows: shown.shadows,
+                    drops_hidden: shown.drops_hidden,
                     ..BladeDetail::default()
                 },
             }),
@@ -159,6 +172,7 @@ struct Shown {
     sun: Sun,
     full_m: f32,
     shadows: bool,
+    drops_hidden: bool,
 }
 
 const ALL: Shown = Shown {
@@ -185,6 +199,7 @@ const ALL: Shown = Shown {
     // So far that everything in these pictures is drawn in full.
     full_m: 12.0,
     shadows: true,
+    drops_hidden: true,
 };
 
 const BALL: &str = "(bodies: [(name: \"ball\", shape: Ball(radius_m: 0.4), \

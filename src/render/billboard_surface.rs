@@ -100,4 +100,6 @@ pub(super) fn triangles([across, up]: [u32; 2]) -> Vec<u32> {
 }
 
 #[cfg(test)]
+mod measure;
+#[cfg(test)]
 mod tests;

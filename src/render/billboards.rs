@@ -12,7 +12,7 @@ use wgpu::{BufferUsages, ShaderStages};
 
 use crate::base::Vec3;
 use crate::field::billboards::{BillboardField, MAX_CLUMPS};
-use crate::field::{Field, TileId};
+use crate::field::{Field, Horizon, TileId};
 use crate::gpu::billboard_place::{BillboardPlacing, BillboardRecord};
 use crate::gpu::{Buffer, FieldBuffers, Gpu, GpuError};
 use crate::gpu_struct;
@@ -80,8 +80,10 @@ impl BillboardForm {
 /// What a frame drew of the billboards.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct BillboardCounts {
-    /// Tiles in view that have some.
+    /// Tiles in view that have some and are drawn.
     pub tiles: u64,
+    /// Tiles in view that are left out since the ground hides them.
+    pub hidden_tiles: u64,
     /// Those of them that are awake, drawn from the nodes of refined forms.
     pub refined_tiles: u64,
     pub billboards: u64,
@@ -168,7 +170,7 @@ impl BillboardsLayer {
             return Ok(None);
         };
         let storage = BufferUsages::STORAGE;
-        let subdivision = billboards.draw_subdivision;
+        let subdivision = billboards.draw_subdivision.max(1);
         let drawn: Vec<SurfaceTap> = (billboards.nodes.iter())
             .flat_map(|&nodes| taps(nodes, subdivision))
             .collect();
@@ -226,7 +228,7 @@ impl BillboardsLayer {
         };
     }
 
-    /// Lists what this frame draws.
+    /// Lists what this frame draws. The ground is drawn with errors of up to `error_px` pixels.
     ///
     /// # Errors
     /// The device's.
@@ -235,6 +237,7 @@ impl BillboardsLayer {
         gpu: &Gpu,
         view: &View,
         picture: Size,
+        error_px: f32,
         blades: &BladesInput<'_>,
     ) -> Result<(), GpuError> {
         self.clear();
@@ -246,20 +249,27 @@ impl BillboardsLayer {
             ..self.base
         };
         self.sources.look.write(gpu, 0, &[look])?;
-        let nodes = blades
+        let active = blades
             .billboards
-            .map_or(&self.no_nodes, |active| active.nodes);
+            .filter(|_| self.field.draw_subdivision > 0);
+        let nodes = active.map_or(&self.no_nodes, |active| active.nodes);
         if self.group.0 != nodes.raw {
             self.group = (nodes.raw.clone(), self.sources.group(gpu, nodes));
         }
         let margin_m = (2.0 * field.grid.tile_m()) + self.field.reach_m;
         let viewpoint = view.viewpoint(picture.aspect(), picture.rows);
+        let error_rad = f64::from(error_px) * viewpoint.pixel_rad;
         let mut seen = field.tiles_in_view(&viewpoint, reach_m + margin_m);
         seen.retain(|&tile| !self.field.range(tile).is_empty());
+        if blades.detail.drops_hidden {
+            let found = seen.len();
+            drop_hidden(field, view, error_rad, &mut seen);
+            self.counts.hidden_tiles = (found - seen.len()) as u64;
+        }
         seen.sort_unstable();
         self.counts.tiles = seen.len() as u64;
         let seen: Vec<(TileId, Option<u32>)> = (seen.into_iter())
-            .map(|tile| (tile, nodes_of(blades.billboards, tile)))
+            .map(|tile| (tile, nodes_of(active, tile)))
             .collect();
         let (mut quads, mut refined) = (Vec::new(), Vec::new());
         let in_one = |a: &(TileId, Option<u32>), b: &(TileId, Option<u32>)| {
@@ -339,6 +349,21 @@ impl BillboardsLayer {
     }
 }
 
+/// Takes out the tiles whose billboards the ground hides as a whole.
+fn drop_hidden(field: &Field, view: &View, error_rad: f64, tiles: &mut Vec<TileId>) {
+    let tall_m = field.farthest_m();
+    let [wide, deep] = field.ground.size_m();
+    let eye = view.eye_in_world;
+    let mut horizon = Horizon::new(&field.ground, eye, wide.hypot(deep), error_rad);
+    tiles.retain(|&tile| {
+        let [low, high] = field.grid.tile_bounds(tile, &field.ground);
+        let [lowest, highest] = field.grid.tile_heights(tile, &field.ground).map(f64::from);
+        let low = [low[0] - tall_m, lowest - tall_m, low[1] - tall_m];
+        let high = [high[0] + tall_m, highest + tall_m, high[1] + tall_m];
+        !horizon.hides(low, high)
+    });
+}
+
 /// Where the nodes of a tile that is awake begin.
 fn nodes_of(active: Option<BillboardNodes<'_>>, tile: TileId) -> Option<u32> {
     let tiles = active?.tiles;
@@ -415,7 +440,7 @@ fn look_of(
         samples,
         spare: 0,
         nodes: billboards.nodes,
-        steps: (billboards.nodes).map(|nodes| (nodes - 1) * billboards.draw_subdivision),
+        steps: (billboards.nodes).map(|nodes| (nodes - 1) * billboards.draw_subdivision.max(1)),
         spare_b: [0; 2],
         tints,
     }

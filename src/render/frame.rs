@@ -347,7 +347,10 @@ impl Renderer {
             self.plants.clear();
         }
         match (&mut self.billboards, &input.blades) {
-            (Some(layer), Some(blades)) => layer.write(gpu, input.view, picture, blades)?,
+            (Some(layer), Some(blades)) => {
+                let error_px = self.terrain_detail.error_px;
+                layer.write(gpu, input.view, picture, error_px, blades)?;
+            }
             (Some(layer), None) => layer.clear(),
             (None, _) => {}
         }

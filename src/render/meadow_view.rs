@@ -43,19 +43,20 @@ pub fn active_slabs(meadow: &Meadow) -> Vec<(TileId, u32)> {
     tiles.iter().map(|tile| (tile.tile, tile.slab)).collect()
 }
 
-/// Boxes around tiles, as high as the grass: around all that are awake, and around resting ones
-/// within [`RESTING_SHOWN_M`] of the eye.
-pub fn tile_marks(meadow: &Meadow, eye_in_world: Vec3<f64>) -> Vec<TileMark> {
+/// Boxes around tiles, as high as what grows there: around all that are awake, as in figure 8 of O09, and
+/// around resting ones within [`RESTING_SHOWN_M`] of an eye that is given.
+pub fn tile_marks(meadow: &Meadow, resting_near: Option<Vec3<f64>>) -> Vec<TileMark> {
     let field = &meadow.field;
-    let [x, _, z] = eye_in_world.to_f64();
-    let near = Bounds {
-        low: [x - RESTING_SHOWN_M, f64::MIN, z - RESTING_SHOWN_M],
-        high: [x + RESTING_SHOWN_M, f64::MAX, z + RESTING_SHOWN_M],
-    };
     let mut tones = BTreeMap::new();
-    (field.octree).query(&field.grid, &field.ground, &near, 0.0, |tile| {
-        tones.insert(tile, TileTone::Resting);
-    });
+    if let Some([x, _, z]) = resting_near.map(Vec3::to_f64) {
+        let near = Bounds {
+            low: [x - RESTING_SHOWN_M, f64::MIN, z - RESTING_SHOWN_M],
+            high: [x + RESTING_SHOWN_M, f64::MAX, z + RESTING_SHOWN_M],
+        };
+        (field.octree).query(&field.grid, &field.ground, &near, 0.0, |tile| {
+            tones.insert(tile, TileTone::Resting);
+        });
+    }
     tones.extend(
         meadow
             .tiles
@@ -70,7 +71,7 @@ pub fn tile_marks(meadow: &Meadow, eye_in_world: Vec3<f64>) -> Vec<TileMark> {
         let heights = field.grid.tile_heights(tile, &field.ground).map(f64::from);
         TileMark {
             low_in_world: [low[0], heights[0], low[1]],
-            high_in_world: [high[0], heights[1] + f64::from(field.reach_m), high[1]],
+            high_in_world: [high[0], heights[1] + field.farthest_m(), high[1]],
             tone,
         }
     });

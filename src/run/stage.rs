@@ -5,8 +5,9 @@ use std::sync::Arc;
 use crate::bodies::Bodies;
 use crate::gpu::{Gpu, GpuError, GrassKernels, PassTimer, TickError};
 use crate::render::{
-    ActiveBillboards, ActiveNodes, BladeCounts, BladeDetail, BladesInput, Exposure, FrameInput,
-    GroundLook, RenderError, Renderer, Sun, View, active_slabs, bodies_at, scene_view, tile_marks,
+    ActiveBillboards, ActiveNodes, BillboardCounts, BladeCounts, BladeDetail, BladesInput,
+    Exposure, FrameInput, GroundLook, RenderError, Renderer, Sun, View, active_slabs, bodies_at,
+    scene_view, tile_marks,
 };
 use crate::scene::assets::Assets;
 use crate::scene::{Action, Camera, Likes, LoadedScene};
@@ -40,6 +41,8 @@ pub struct Stage {
     pub sun: Sun,
     pub exposure: Exposure,
     pub detail: BladeDetail,
+    /// Whether the overlay has boxes around tiles at rest, too; without them it is that of figure 8 of O09.
+    pub resting_boxes: bool,
 }
 
 /// Why a stage cannot be set or shown.
@@ -116,6 +119,7 @@ impl Stage {
             sun: Sun::default(),
             exposure: Exposure::default(),
             detail: BladeDetail::of_device(gpu),
+            resting_boxes: true,
             loaded: loaded.clone(),
             meadow,
             engine,
@@ -271,7 +275,7 @@ impl Stage {
             Engine::Gpu(engine) => (&slabs, engine.grass.drawn()),
         };
         let marks = if overlay {
-            tile_marks(meadow, view.eye_in_world)
+            tile_marks(meadow, self.resting_boxes.then_some(view.eye_in_world))
         } else {
             Vec::new()
         };
@@ -293,6 +297,11 @@ impl Stage {
             time_s: meadow.time_s(),
         };
         Ok(self.renderer.draw(gpu, &input, target, &mut self.timer)?)
+    }
+
+    /// What the last picture drew of the billboards; `None` in a scene without them.
+    pub fn billboard_counts(&self) -> Option<BillboardCounts> {
+        self.renderer.billboard_counts()
     }
 
     /// What the last picture drew of the plants.

@@ -1,0 +1,187 @@
+//! Billboards of tiles that are awake, beside the quads they are at rest.
+
+use libtest_mimic::Failed;
+use sward::base::Vec3;
+use sward::gpu::Gpu;
+use sward::render::{Picture, View};
+
+use super::{ALL, Shown, Stage, WHOLE, difference, hold};
+
+/// A ball that hangs 20 cm over the tallest clumps' tips, and within their bounding balls.
+const NEAR: &str = "(terrain: (ground: Flat(size_m: (8, 8))), grass: (species: []), \
+    billboards: Some((density_per_m2: 30)), wind: (strength: 0.1, gust: 0.1), \
+    bodies: [(name: \"ball\", shape: Ball(radius_m: 0.1), position_m: (0, 0.8, 1), motion: Fixed)])";
+
+/// A ball that lies in the clumps until it is taken out.
+const PRESSED: &str = "(terrain: (ground: Flat(size_m: (8, 8))), grass: (species: []), \
+    billboards: Some((density_per_m2: 30, nodes: (NODES), draw_subdivision: CUT)), \
+    wind: (strength: 0.1, gust: 0.1), solver: (recovery_s: 0.5), \
+    bodies: [(name: \"ball\", shape: Ball(radius_m: 0.4), position_m: (0, 0.4, 1), motion: Fixed)], \
+    script: [(at_s: 0.1, action: Remove(body: \"ball\"))])";
+
+fn pressed(nodes: &str, cut: u32) -> String {
+    PRESSED
+        .replace("NODES", nodes)
+        .replace("CUT", &cut.to_string())
+}
+
+/// The form that is drawn of billboards in tiles that are awake: that of their nodes, or quads.
+fn forms(gpu: &Gpu, stage: &mut Stage, shown: Shown) -> Result<[Picture; 2], Failed> {
+    let awake = stage.shoot(
+        gpu,
+        Shown {
+            active: true,
+            ..shown
+        },
+    )?;
+    let counts = stage.renderer.billboard_counts().unwrap_or_default();
+    hold(
+        counts.refined_tiles > 0 && counts.refined > 0,
+        format!("nothing is refined: {counts:?}"),
+    )?;
+    let asleep = stage.shoot(
+        gpu,
+        Shown {
+            active: false,
+            ..shown
+        },
+    )?;
+    Ok([awake, asleep])
+}
+
+/// Root mean square difference over the texels that differ at all: that of the parts that change, however
+/// little of the picture they fill.
+fn where_changed([a, b]: &[Picture; 2]) -> (usize, f64) {
+    let texels = a.rgba8.chunks_exact(4).zip(b.rgba8.chunks_exact(4));
+    let changed: Vec<f64> = texels
+        .filter(|(a, b)| a != b)
+        .map(|(a, b)| {
+            let squares = (0..3).map(|n| (f64::from(a[n]) - f64::from(b[n])).powi(2));
+            squares.sum::<f64>() / 3.0
+        })
+        .collect();
+    let mean = changed.iter().sum::<f64>() / changed.len().max(1) as f64;
+    (changed.len(), mean.sqrt())
+}
+
+/// A tile that wakes draws its billboards as grids in place of quads. A grid in the wind is the quad cut into
+/// smaller triangles of the same plane, light and texture: roundings at their edges remain.
+pub fn waking_changes_no_clump(gpu: &Gpu) -> Result<(), Failed> {
+    let mut stage = Stage::new(gpu, NEAR, 2)?;
+    let pair = forms(gpu, &mut stage, ALL)?;
+    let step = difference(&pair[0], &pair[1], WHOLE);
+    let (count, there) = where_changed(&pair);
+    println!("waking: {step:.4} grey levels; {count} texels change, by {there:.3}");
+    hold(step < 1.0, format!("waking changes {step} grey levels"))
+}
+
+/// In the last sub-steps before a touched billboard is its quad again the two differ by less than one grey
+/// level, where it stands; while it is pressed they differ by far more.
+pub fn a_clump_that_is_back_is_its_quad(gpu: &Gpu) -> Result<(), Failed> {
+    for (nodes, cut) in [("3, 3", 1), ("4, 4", 1), ("4, 4", 2), ("5, 4", 3)] {
+        let scene = pressed(nodes, cut);
+        // Nothing is left when tiles come to rest, 0.5 s after the last contact.
+        let mut ticks = 40;
+        let last = loop {
+            let stage = Stage::new(gpu, &scene, ticks)?;
+            if stage.nodes.tiles.is_empty() {
+                break ticks - 1;
+            }
+            ticks += 1;
+            hold(ticks < 400, "tiles never come to rest")?;
+        };
+        let near = [0.3, 0.2, 0.7, 0.7];
+        let mut told = Vec::new();
+        for before in [last - 20, last - 4, last] {
+            let mut stage = Stage::new(gpu, &scene, before)?;
+            let shown = Shown {
+                bodies: false,
+                ..ALL
+            };
+            let pair = forms(gpu, &mut stage, shown)?;
+            let (count, there) = where_changed(&pair);
+            told.push((
+                last - before,
+                difference(&pair[0], &pair[1], near),
+                count,
+                there,
+            ));
+        }
+        println!("{nodes} cut by {cut}, sub-steps before rest: {told:.3?}");
+        for &(before, step, ..) in &told[1..] {
+            hold(
+                step < 1.0,
+                format!("{before} before rest: {step} grey levels"),
+            )?;
+        }
+    }
+    Ok(())
+}
+
+/// A pressed clump is drawn pressed, and the smooth surface through its nodes is another than their
+/// straight lines.
+pub fn pressed_clumps_show(gpu: &Gpu) -> Result<(), Failed> {
+    let shown = Shown {
+        bodies: false,
+        ..ALL
+    };
+    let mut pictures = Vec::new();
+    for cut in [0, 1, 4] {
+        let mut stage = Stage::new(gpu, &pressed("3, 3", cut), 20)?;
+        pictures.push(stage.shoot(gpu, shown)?);
+    }
+    let near = [0.35, 0.3, 0.65, 0.6];
+    let bent = difference(&pictures[0], &pictures[1], near);
+    let smooth = difference(&pictures[1], &pictures[2], near);
+    println!("pressed {bent:.1}, smooth {smooth:.1} grey levels");
+    hold(
+        bent > 5.0 && smooth > 1.0,
+        format!("pressing changes {bent} grey levels, smoothing {smooth}"),
+    )
+}
+
+/// Tiles of billboards behind hills are left out, and no texel changes.
+pub fn hidden_clumps_change_nothing(gpu: &Gpu) -> Result<(), Failed> {
+    let scene = "(terrain: (ground: Rolling(size_m: (64, 64), amplitude_m: 3, wavelength_m: 15, seed: 3)), \
+        grass: (species: []), billboards: Some((density_per_m2: 12)))";
+    let mut stage = Stage::new(gpu, scene, 0)?;
+    let ground = &stage.meadow.field.ground;
+    let views = [[-20.0, -9.0], [3.0, 14.0], [25.0, -25.0], [0.0, 0.0]].map(|[x, z]| {
+        let eye = Vec3::new(x, ground.height_in_world(x, z) + 1.0, z);
+        View::look_at(eye, Vec3::new(0.3, eye.y - 0.5, 1.0), 60.0)
+    });
+    let mut all_hidden = 0;
+    for view in views {
+        let shown = Shown { view, ..ALL };
+        let dropped = stage.shoot(gpu, shown)?;
+        let counts = stage.renderer.billboard_counts().unwrap_or_default();
+        let full = stage.shoot(
+            gpu,
+            Shown {
+                drops_hidden: false,
+                ..shown
+            },
+        )?;
+        let all = stage.renderer.billboard_counts().unwrap_or_default();
+        println!(
+            "{} of {} tiles in view are hidden",
+            counts.hidden_tiles, all.tiles
+        );
+        hold(
+            counts.tiles + counts.hidden_tiles == all.tiles && all.hidden_tiles == 0,
+            format!("{counts:?} of {all:?}"),
+        )?;
+        let changed = dropped
+            .rgba8
+            .iter()
+            .zip(&full.rgba8)
+            .filter(|(a, b)| a != b)
+            .count();
+        hold(changed == 0, format!("{changed} bytes change"))?;
+        all_hidden += counts.hidden_tiles;
+    }
+    hold(
+        all_hidden > 100,
+        format!("only {all_hidden} tiles are hidden"),
+    )
+}
