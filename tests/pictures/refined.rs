@@ -4,6 +4,7 @@ use libtest_mimic::Failed;
 use sward::base::Vec3;
 use sward::gpu::Gpu;
 use sward::render::{Picture, View};
+use sward::sim::{Grass, Meadow, tick};
 
 use super::{ALL, Shown, Stage, WHOLE, difference, hold};
 
@@ -75,21 +76,25 @@ pub fn waking_changes_no_clump(gpu: &Gpu) -> Result<(), Failed> {
     hold(step < 1.0, format!("waking changes {step} grey levels"))
 }
 
+/// The last tick at which a tile is awake.
+fn last_awake(scene: &str) -> Result<u32, Failed> {
+    let mut meadow = Meadow::new(ron::from_str(scene)?, &Default::default())?;
+    let mut grass = Grass::<f32>::new();
+    for _ in 0..400 {
+        tick(&mut meadow, &mut grass)?;
+        if meadow.ticks > 40 && meadow.work.tiles.is_empty() {
+            return Ok(meadow.ticks - 1);
+        }
+    }
+    Err("tiles never come to rest".into())
+}
+
 /// In the last sub-steps before a touched billboard is its quad again the two differ by less than one grey
 /// level, where it stands; while it is pressed they differ by far more.
 pub fn a_clump_that_is_back_is_its_quad(gpu: &Gpu) -> Result<(), Failed> {
     for (nodes, cut) in [("3, 3", 1), ("4, 4", 1), ("4, 4", 2), ("5, 4", 3)] {
         let scene = pressed(nodes, cut);
-        // Nothing is left when tiles come to rest, 0.5 s after the last contact.
-        let mut ticks = 40;
-        let last = loop {
-            let stage = Stage::new(gpu, &scene, ticks)?;
-            if stage.nodes.tiles.is_empty() {
-                break ticks - 1;
-            }
-            ticks += 1;
-            hold(ticks < 400, "tiles never come to rest")?;
-        };
+        let last = last_awake(&scene)?;
         let near = [0.3, 0.2, 0.7, 0.7];
         let mut told = Vec::new();
         for before in [last - 20, last - 4, last] {
