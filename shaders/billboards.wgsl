@@ -101,6 +101,11 @@ fn corner_radiance(shaded: Shaded, point: SurfacePoint, corner: u32) -> vec3f {
     return through_air(leaf_radiance(rgb, normal, light, position), position);
 }
 
+// Where a place in a tile's anchor is in the picture.
+fn clip_of(tile: BillboardTile, place: vec3f) -> vec4f {
+    return frame.clip_from_eye * vec4f(tile.anchor_from_eye + place, 1.0);
+}
+
 fn billboard_point(billboard: Billboard, point: SurfacePoint, at: vec2f) -> BillboardPoint {
     let tile = billboard_tiles[billboard.tile];
     // A number of the billboard's own, free of its phase's first digits.
@@ -126,7 +131,7 @@ fn billboard_point(billboard: Billboard, point: SurfacePoint, at: vec2f) -> Bill
     // Every other one shows its picture mirrored. Row 0 of a picture is its top.
     let is_mirrored = fract(billboard.flutter_turns * 17.0) < 0.5;
     let uv = vec2f(select(at.x, 1.0 - at.x, is_mirrored), 1.0 - at.y);
-    let clip = frame.clip_from_eye * vec4f(tile.anchor_from_eye + point.place, 1.0);
+    let clip = clip_of(tile, point.place);
     return BillboardPoint(
         select(clip, vec4f(0.0, 0.0, -1.0, 1.0), kept <= 0.0 || (point.is_quad && opacity <= 0.0)),
         radiance,
@@ -165,7 +170,14 @@ fn refined_vertex(
     let nodes = billboard_look.nodes;
     let first = tile.nodes_at + (instance - tile.first) * nodes.x * nodes.y;
     if billboard_nodes[first].w == 0.0 {
-        return billboard_point(billboard, quad_point(quad, at), at);
+        // The grid's first cell is the whole quad, in the same two triangles; the others have no area.
+        let corner = vec2f(min(step, vec2u(1u)));
+        if any(step > vec2u(1u)) {
+            var point: BillboardPoint;
+            point.clip = clip_of(tile, quad_place(quad, corner));
+            return point;
+        }
+        return billboard_point(billboard, quad_point(quad, corner), corner);
     }
     let columns = surface_taps[step.x];
     let rows = surface_taps[steps.x + 1u + step.y];

@@ -261,12 +261,7 @@ pub fn quads_in_the_wind_agree(device: &Device) -> Result<(), Failed> {
         let anchor = field.grid.anchor_of(tile, &field.ground);
         let quad: Quad<f32> = Quad::in_wind(&packed.open(), &anchor, &wind);
         for (want, row) in quad.vertices().into_iter().zip(rows) {
-            let got = Vec3::new(row[0], row[1], row[2]);
-            let got = Vec3::new(
-                f32::from_bits(got.x),
-                f32::from_bits(got.y),
-                f32::from_bits(got.z),
-            );
+            let got: Vec3<f32> = Vec3::of_f32([row[0], row[1], row[2]].map(f32::from_bits));
             equal += u32::from(got == want);
             all += 1;
             let off = Vec3::<f64>::of_f32(got.to_f32()) - Vec3::of_f32(want.to_f32());

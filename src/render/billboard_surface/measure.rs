@@ -26,8 +26,20 @@ const SCENE: &str = r#"(
     ],
 )"#;
 
-/// Places of every touched billboard's nodes, at some sub-steps.
-type Poses = BTreeMap<(u32, TileId, u32), Vec<Vec<f64>>>;
+/// How a billboard is: pressed by one of the bodies, or on its way back.
+const GROUPS: [&str; 4] = ["ball", "post", "box", "recovering"];
+
+/// Places of every bent billboard's nodes, at some sub-steps, by group.
+type Poses = BTreeMap<(usize, u32, TileId, u32), Vec<Vec<f64>>>;
+
+/// The group of a billboard, from its place across the bodies' ways and its last contact.
+fn group_of(z_m: f64, age: u32) -> Option<usize> {
+    match age {
+        0 => Some(((z_m + 3.0) / 2.0).clamp(0.0, 2.0) as usize),
+        1..=160 => Some(3),
+        _ => None,
+    }
+}
 
 struct Run {
     poses: Poses,
@@ -46,7 +58,7 @@ fn run(nodes: u32) -> Run {
     for now in 1..=ticks {
         tick(&mut meadow, &mut grass).expect("a sub-step");
         touched += grass.pushed;
-        if now % 60 != 0 {
+        if now % 30 != 0 {
             continue;
         }
         for tile in &meadow.work.tiles {
@@ -54,9 +66,11 @@ fn run(nodes: u32) -> Run {
                 continue;
             };
             for board in standing_billboards(&meadow, tile, slab) {
-                if board.touched_at == now {
+                let [_, z_m] = board.root_in_world();
+                let group = (board.touched_at > 0).then(|| group_of(z_m, now - board.touched_at));
+                if let Some(group) = group.flatten() {
                     let places = board.nodes.iter().map(|node| node.to_f64().to_vec());
-                    poses.insert((now, tile.tile, board.place), places.collect());
+                    poses.insert((group, now, tile.tile, board.place), places.collect());
                 }
             }
         }
@@ -132,46 +146,63 @@ fn sampled(finest: &[Vec<f64>], along: u32) -> Vec<Vec<f64>> {
     places.map(|place| finest[place as usize].clone()).collect()
 }
 
+/// Errors of a group: against the finest run, of straight segments and smooth; and of the finest run's own
+/// nodes, sampled as the coarser grid has them. Root mean squares and medians of each.
+fn errors(group: usize, along: u32, coarse: &Poses, finest: &Poses) -> (usize, [[f64; 2]; 4]) {
+    let of_group = || finest.iter().filter(|(key, _)| key.0 == group);
+    let of_run = |smooth| {
+        let both = of_group().filter_map(|(key, fine)| Some((coarse.get(key)?, fine)));
+        of_all(
+            both.map(|(nodes, fine)| apart_mm(nodes, along, fine, smooth))
+                .collect(),
+        )
+    };
+    let of_samples = |smooth| {
+        if (FINEST - 1) % (along - 1) != 0 {
+            return [f64::NAN; 2];
+        }
+        let all = of_group().map(|(_, fine)| apart_mm(&sampled(fine, along), along, fine, smooth));
+        of_all(all.collect())
+    };
+    let count = of_group()
+        .filter(|(key, _)| coarse.contains_key(*key))
+        .count();
+    let all = [
+        of_run(false),
+        of_run(true),
+        of_samples(false),
+        of_samples(true),
+    ];
+    (count, all)
+}
+
 #[test]
 #[ignore = "a measurement"]
 fn surfaces_beside_a_finer_grid() {
     let finest = run(FINEST);
-    let mut table = String::from(
-        "nodes,springs_ms,touched,straight_rms_mm,smooth_rms_mm,straight_median_mm,smooth_median_mm,\
-         sampled_straight_rms_mm,sampled_smooth_rms_mm\n",
-    );
-    for along in 3..=FINEST {
-        let coarse = run(along);
-        let all = |smooth| {
-            let both = (finest.poses.iter())
-                .filter_map(|(key, fine)| Some((coarse.poses.get(key)?, fine)));
-            of_all(
-                both.map(|(nodes, fine)| apart_mm(nodes, along, fine, smooth))
-                    .collect(),
-            )
-        };
-        let nested = (FINEST - 1) % (along - 1) == 0;
-        let from_finest = |smooth| {
-            if !nested {
-                return String::new();
-            }
-            let apart = (finest.poses.values())
-                .map(|fine| apart_mm(&sampled(fine, along), along, fine, smooth));
-            format!("{:.2}", of_all(apart.collect())[0])
-        };
-        let [straight, smooth] = [false, true].map(all);
-        let _ = writeln!(
-            table,
-            "{along}x{along},{:.3},{:.1},{:.2},{:.2},{:.2},{:.2},{},{}",
-            coarse.ms,
-            coarse.touched,
-            straight[0],
-            smooth[0],
-            straight[1],
-            smooth[1],
-            from_finest(false),
-            from_finest(true),
-        );
+    let mut table = String::from("group,nodes,billboards,collide_and_relax_ms,touched");
+    for of in ["run", "sampled"] {
+        for form in ["straight", "smooth"] {
+            let _ = write!(table, ",{of}_{form}_rms_mm,{of}_{form}_median_mm");
+        }
     }
-    println!("{} touched billboards\n{table}", finest.poses.len());
+    table.push('\n');
+    for along in [3, 4, 5, 7, FINEST] {
+        let coarse = run(along);
+        for (group, name) in GROUPS.into_iter().enumerate() {
+            let (count, all) = errors(group, along, &coarse.poses, &finest.poses);
+            let (ms, touched) = (coarse.ms, coarse.touched);
+            let _ = write!(table, "{name},{along}x{along},{count},{ms:.3},{touched:.1}");
+            for mm in all.as_flattened() {
+                let text = if mm.is_nan() {
+                    String::new()
+                } else {
+                    format!("{mm:.2}")
+                };
+                let _ = write!(table, ",{text}");
+            }
+            table.push('\n');
+        }
+    }
+    println!("{table}");
 }
