@@ -164,6 +164,31 @@ mod tests {
         }
     }
 
+    /// Boxes of figure 8: awake tiles alone, and as high as the tallest clumps.
+    #[test]
+    fn boxes_of_awake_tiles_hold_what_grows_there() {
+        let scene = "(terrain: (ground: Flat(size_m: (8, 8))), grass: (species: []), \
+            billboards: Some((density_per_m2: 30)), bodies: [(name: \"ball\", \
+            shape: Ball(radius_m: 0.2), position_m: (0, 0.2, 0), motion: Fixed)])";
+        let scene: Scene = ron::from_str(scene).expect("a scene");
+        let mut meadow = Meadow::new(scene, &Default::default()).expect("a meadow");
+        let mut grass = crate::sim::Grass::<f32>::new();
+        for _ in 0..2 {
+            crate::sim::tick(&mut meadow, &mut grass).expect("a sub-step");
+        }
+        let awake = tile_marks(&meadow, None);
+        assert_eq!(awake.len(), meadow.work.tiles.len());
+        assert!(awake.iter().all(|mark| mark.tone == TileTone::Colliding));
+        let billboards = meadow.field.billboards.as_ref().expect("some");
+        let tallest = billboards.all.iter().map(|one| one.height_m);
+        let tallest = f64::from(tallest.fold(0.0, most));
+        assert!(tallest > 0.4);
+        let low = |mark: &TileMark| mark.high_in_world[1] - mark.low_in_world[1];
+        assert!(awake.iter().all(|mark| low(mark) >= tallest));
+        let all = tile_marks(&meadow, Some(Vec3::ZERO));
+        assert_eq!(all.len() as u32, meadow.field.grid.tile_count());
+    }
+
     #[test]
     fn a_camera_follows_its_body_and_stays_above_the_ground() {
         let meadow = meadow(vec![ball("a", [2.0, 0.5, 1.0])]);

@@ -1,7 +1,10 @@
 //! Billboards of tiles that are awake, beside the quads they are at rest.
 
+use std::time::Instant;
+
 use libtest_mimic::Failed;
 use sward::base::Vec3;
+use sward::field::Horizon;
 use sward::gpu::Gpu;
 use sward::render::{Picture, View};
 use sward::sim::{Grass, Meadow, tick};
@@ -146,6 +149,19 @@ pub fn pressed_clumps_show(gpu: &Gpu) -> Result<(), Failed> {
     )
 }
 
+/// How long it takes to judge all tiles of a field from an eye, the horizon included.
+fn judging_ms(meadow: &Meadow, view: View) -> f64 {
+    let (field, ground) = (&meadow.field, &meadow.field.ground);
+    let started = Instant::now();
+    let mut horizon = Horizon::new(ground, view.eye_in_world, 91.0, 0.0);
+    for tile in 0..field.grid.tile_count() {
+        let [low, high] = field.grid.tile_bounds(tile, ground);
+        let [lowest, highest] = field.grid.tile_heights(tile, ground).map(f64::from);
+        horizon.hides([low[0], lowest, low[1]], [high[0], highest + 0.8, high[1]]);
+    }
+    1e3 * started.elapsed().as_secs_f64()
+}
+
 /// Tiles of billboards behind hills are left out, and no texel changes.
 pub fn hidden_clumps_change_nothing(gpu: &Gpu) -> Result<(), Failed> {
     let scene = "(terrain: (ground: Rolling(size_m: (64, 64), amplitude_m: 3, wavelength_m: 15, seed: 3)), \
@@ -156,6 +172,10 @@ pub fn hidden_clumps_change_nothing(gpu: &Gpu) -> Result<(), Failed> {
         let eye = Vec3::new(x, ground.height_in_world(x, z) + 1.0, z);
         View::look_at(eye, Vec3::new(0.3, eye.y - 0.5, 1.0), 60.0)
     });
+    println!(
+        "{:.2} ms to judge every tile",
+        judging_ms(&stage.meadow, views[0])
+    );
     let mut all_hidden = 0;
     for view in views {
         let shown = Shown { view, ..ALL };
