@@ -158,7 +158,7 @@ fn errors(group: usize, along: u32, coarse: &Poses, finest: &Poses) -> (usize, [
         )
     };
     let of_samples = |smooth| {
-        if (FINEST - 1) % (along - 1) != 0 {
+        if !(FINEST - 1).is_multiple_of(along - 1) {
             return [f64::NAN; 2];
         }
         let all = of_group().map(|(_, fine)| apart_mm(&sampled(fine, along), along, fine, smooth));

@@ -28,7 +28,7 @@ fn splines_meet_their_nodes_and_are_exact_for_parabolas() {
                     (slope - (0.8 * x - 1.3)).abs() < 1e-5,
                     "{nodes} {subdivision} {x}"
                 );
-                if step as u32 % subdivision == 0 {
+                if (step as u32).is_multiple_of(subdivision) {
                     let own = (step as u32 / subdivision - tap.first) as usize;
                     let mut only = [0.0; 4];
                     only[own] = 1.0;
