@@ -10,14 +10,13 @@ use std::sync::Arc;
 
 use wgpu::{BufferUsages, ShaderStages};
 
-use crate::base::Vec3;
+use crate::field::Field;
 use crate::field::billboards::{BillboardField, MAX_CLUMPS};
-use crate::field::{Field, Horizon, TileId};
 use crate::gpu::billboard_place::{BillboardPlacing, BillboardRecord};
 use crate::gpu::{Buffer, FieldBuffers, Gpu, GpuError};
 use crate::gpu_struct;
 
-use super::active_billboards::BillboardNodes;
+use super::billboard_runs::{BillboardTile, Sight};
 use super::billboard_surface::{SurfaceTap, taps, triangles};
 use super::blade_tiles::Size;
 use super::camera::View;
@@ -44,17 +43,6 @@ gpu_struct! {
         steps: [u32; 2],
         spare_b: [u32; 2],
         tints: [[f32; 4]; MAX_CLUMPS],
-    }
-}
-
-gpu_struct! {
-    /// Twin of `BillboardTile` in the shader.
-    pub(super) struct BillboardTile {
-        anchor_from_eye: [f32; 3],
-        first: u32,
-        anchor: [u32; 2],
-        nodes_at: u32,
-        spare: u32,
     }
 }
 
@@ -256,66 +244,35 @@ impl BillboardsLayer {
         if self.group.0 != nodes.raw {
             self.group = (nodes.raw.clone(), self.sources.group(gpu, nodes));
         }
-        let margin_m = (2.0 * field.grid.tile_m()) + self.field.reach_m;
-        let viewpoint = view.viewpoint(picture.aspect(), picture.rows);
-        let error_rad = f64::from(error_px) * viewpoint.pixel_rad;
-        let mut seen = field.tiles_in_view(&viewpoint, reach_m + margin_m);
-        seen.retain(|&tile| !self.field.range(tile).is_empty());
-        if blades.detail.drops_hidden {
-            let found = seen.len();
-            drop_hidden(field, view, error_rad, &mut seen);
-            self.counts.hidden_tiles = (found - seen.len()) as u64;
-        }
-        seen.sort_unstable();
-        self.counts.tiles = seen.len() as u64;
-        let seen: Vec<(TileId, Option<u32>)> = (seen.into_iter())
-            .map(|tile| (tile, nodes_of(active, tile)))
-            .collect();
-        let (mut quads, mut refined) = (Vec::new(), Vec::new());
-        let in_one = |a: &(TileId, Option<u32>), b: &(TileId, Option<u32>)| {
-            a.0 + 1 == b.0 && a.1.is_some() == b.1.is_some()
+        let sight = Sight {
+            field,
+            billboards: &self.field,
+            view,
+            picture,
+            reach_m,
+            error_px,
         };
-        for run in seen.chunk_by(in_one) {
-            let places: Vec<BillboardTile> = run
-                .iter()
-                .map(|&(tile, nodes_at)| self.place_of(field, view, tile, nodes_at))
-                .collect();
-            let ((first, nodes_at), (last, _)) = (run[0], run[run.len() - 1]);
-            self.sources.tiles.write(gpu, first as usize, &places)?;
-            let all = self.field.ranges[first as usize]..self.field.ranges[last as usize + 1];
-            let count = u64::from(all.end - all.start);
+        let mut tiles = sight.tiles();
+        if blades.detail.drops_hidden {
+            let found = tiles.len();
+            sight.drop_hidden(&mut tiles);
+            self.counts.hidden_tiles = (found - tiles.len()) as u64;
+        }
+        self.counts.tiles = tiles.len() as u64;
+        for run in sight.runs(&tiles, active) {
+            let count = u64::from(run.billboards.end - run.billboards.start);
+            self.counts.draws += 1;
             self.counts.billboards += count;
-            let run_at = (nearest_m(&places), all);
-            if nodes_at.is_some() {
-                self.counts.refined_tiles += places.len() as u64;
+            (self.sources.tiles).write(gpu, run.first as usize, &run.places)?;
+            if run.is_refined {
+                self.counts.refined_tiles += run.places.len() as u64;
                 self.counts.refined += count;
-                refined.push(run_at);
+                self.refined_runs.push(run.billboards);
             } else {
-                quads.push(run_at);
+                self.quad_runs.push(run.billboards);
             }
         }
-        self.counts.draws = (quads.len() + refined.len()) as u64;
-        self.quad_runs = near_to_far(quads);
-        self.refined_runs = near_to_far(refined);
         Ok(())
-    }
-
-    fn place_of(
-        &self,
-        field: &Field,
-        view: &View,
-        tile: TileId,
-        nodes_at: Option<u32>,
-    ) -> BillboardTile {
-        let anchor = field.grid.anchor_of(tile, &field.ground);
-        let origin = Vec3::of(field.grid.anchor_in_world(&anchor, &field.ground));
-        BillboardTile {
-            anchor_from_eye: view.from_eye(origin),
-            first: self.field.ranges[tile as usize],
-            anchor: anchor.index,
-            nodes_at: nodes_at.unwrap_or(0),
-            spare: 0,
-        }
     }
 
     /// Whether the next frame shows some of a form.
@@ -347,34 +304,6 @@ impl BillboardsLayer {
             }
         }
     }
-}
-
-/// Takes out the tiles whose billboards the ground hides as a whole.
-fn drop_hidden(field: &Field, view: &View, error_rad: f64, tiles: &mut Vec<TileId>) {
-    let tall_m = field.farthest_m();
-    let [wide, deep] = field.ground.size_m();
-    let eye = view.eye_in_world;
-    let mut horizon = Horizon::new(&field.ground, eye, wide.hypot(deep), error_rad);
-    tiles.retain(|&tile| {
-        let [low, high] = field.grid.tile_bounds(tile, &field.ground);
-        let [lowest, highest] = field.grid.tile_heights(tile, &field.ground).map(f64::from);
-        let low = [low[0] - tall_m, lowest - tall_m, low[1] - tall_m];
-        let high = [high[0] + tall_m, highest + tall_m, high[1] + tall_m];
-        !horizon.hides(low, high)
-    });
-}
-
-/// Where the nodes of a tile that is awake begin.
-fn nodes_of(active: Option<BillboardNodes<'_>>, tile: TileId) -> Option<u32> {
-    let tiles = active?.tiles;
-    let found = tiles.binary_search_by_key(&tile, |&(id, _)| id).ok()?;
-    Some(tiles[found].1)
-}
-
-/// Runs by their distances, so that what is hidden is not shaded.
-fn near_to_far(mut runs: Vec<(f64, Range<u32>)>) -> Vec<Range<u32>> {
-    runs.sort_by(|a, b| a.0.total_cmp(&b.0));
-    runs.into_iter().map(|(_, run)| run).collect()
 }
 
 fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
@@ -444,13 +373,4 @@ fn look_of(
         spare_b: [0; 2],
         tints,
     }
-}
-
-/// Distance of the nearest of some anchors from the eye.
-fn nearest_m(places: &[BillboardTile]) -> f64 {
-    let away = |place: &BillboardTile| Vec3::<f64>::of_f32(place.anchor_from_eye).length();
-    places
-        .iter()
-        .map(away)
-        .fold(f64::INFINITY, crate::base::least)
 }

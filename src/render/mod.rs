@@ -5,6 +5,7 @@
 
 mod active_billboards;
 mod active_nodes;
+mod billboard_runs;
 mod billboard_surface;
 mod billboards;
 mod blade_tiles;
@@ -185,7 +186,7 @@ pub fn layouts() -> Vec<StructLayout> {
         view_group::Frame::layout(),
         billboard_surface::SurfaceTap::layout(),
         billboards::BillboardLook::layout(),
-        billboards::BillboardTile::layout(),
+        billboard_runs::BillboardTile::layout(),
         blade_tiles::DrawnTile::layout(),
         bodies::BodyRecord::layout(),
         coat_place::CoatBody::layout(),
