@@ -79,9 +79,10 @@ pub struct BillboardCounts {
     pub refined: u64,
     /// Draw calls: runs of consecutive tiles.
     pub draws: u64,
-    /// Bytes on the device: records, tiles and the refined surface's tables; and pictures with their mip
-    /// levels. Nodes of refined forms belong to the engine.
+    /// Bytes on the device: records, tiles and the refined surface's tables; nodes of the refined forms in
+    /// awake tiles; and pictures with their mip levels.
     pub state_bytes: u64,
+    pub nodes_bytes: u64,
     pub picture_bytes: u64,
 }
 
@@ -241,6 +242,7 @@ impl BillboardsLayer {
             .billboards
             .filter(|_| self.field.draw_subdivision > 0);
         let nodes = active.map_or(&self.no_nodes, |active| active.nodes);
+        self.counts.nodes_bytes = nodes.raw.size();
         if self.group.0 != nodes.raw {
             self.group = (nodes.raw.clone(), self.sources.group(gpu, nodes));
         }

@@ -40,7 +40,7 @@ fn forms(gpu: &Gpu, stage: &mut Stage, shown: Shown) -> Result<[Picture; 2], Fai
     )?;
     let counts = stage.renderer.billboard_counts().unwrap_or_default();
     hold(
-        counts.refined_tiles > 0 && counts.refined > 0,
+        counts.refined_tiles > 0 && counts.refined > 0 && counts.nodes_bytes > 16,
         format!("nothing is refined: {counts:?}"),
     )?;
     let asleep = stage.shoot(
