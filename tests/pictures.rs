@@ -65,6 +65,10 @@ const CHECKS: &[(&str, Check)] = &[
         "a_clump_that_is_back_is_its_quad",
         refined::a_clump_that_is_back_is_its_quad,
     ),
+    (
+        "refined_forms_in_the_wind_are_quads",
+        refined::refined_forms_in_the_wind_are_quads,
+    ),
     ("measure_forms_of_clumps", refined::forms_are_timed),
     ("pressed_clumps_show", refined::pressed_clumps_show),
     (

@@ -5,11 +5,14 @@ use std::time::Instant;
 use libtest_mimic::Failed;
 use sward::base::Vec3;
 use sward::field::Horizon;
-use sward::gpu::Gpu;
-use sward::render::{Picture, View};
+use sward::gpu::{Buffer, Gpu, PassTimer};
+use sward::render::{
+    BillboardNodes, BladeDetail, BladesInput, Exposure, FrameInput, Picture, View, bodies_at,
+};
+use sward::sim::billboard::Quad;
 use sward::sim::{Grass, Meadow, tick};
 
-use super::{ALL, Shown, Stage, difference, hold};
+use super::{ALL, Shown, Stage, WHOLE, difference, hold};
 
 /// A ball that hangs 20 cm over the tallest clumps' tips, and within their bounding balls.
 const NEAR: &str = "(terrain: (ground: Flat(size_m: (8, 8))), grass: (species: []), \
@@ -78,6 +81,78 @@ pub fn waking_changes_no_clump(gpu: &Gpu) -> Result<(), Failed> {
         count == 0,
         format!("waking changes {count} texels by {there} grey levels"),
     )
+}
+
+/// Nodes of every billboard of a field in the wind, as of refined forms whose last offset has just faded.
+fn faded(gpu: &Gpu, meadow: &Meadow) -> Result<(Vec<(u32, u32)>, Buffer<[f32; 4]>), Failed> {
+    let field = &meadow.field;
+    let weave = meadow.weave.as_ref().ok_or("the scene has billboards")?;
+    let (mut tiles, mut rows) = (Vec::new(), Vec::new());
+    for tile in 0..field.grid.tile_count() {
+        let anchor = field.grid.anchor_of(tile, &field.ground);
+        tiles.push((tile, rows.len() as u32));
+        for billboard in field.billboards_in(tile) {
+            let quad: Quad<f32> = Quad::in_wind(billboard, &anchor, &meadow.work.wind);
+            quad.nodes(weave.grid, |_, node| {
+                rows.push([node.x, node.y, node.z, 1.0])
+            });
+        }
+    }
+    let nodes = Buffer::with(gpu, "faded", &rows, wgpu::BufferUsages::STORAGE)?;
+    Ok((tiles, nodes))
+}
+
+/// At the moment of change, either way, a refined form is in its quad's place: all of a meadow drawn in one
+/// form and in the other differ by less than one grey level, root mean square. Its light is that of the
+/// quad's corners, mixed as over the quad's two triangles: alike within a step of 8 bits where a form has as
+/// many segments across as up, else between the two forms' diagonals only.
+pub fn refined_forms_in_the_wind_are_quads(gpu: &Gpu) -> Result<(), Failed> {
+    for (nodes, cut) in [("3, 3", 1), ("4, 4", 2), ("5, 4", 3), ("9, 3", 2)] {
+        let mut stage = Stage::new(gpu, &pressed(nodes, cut), 0)?;
+        let plain = stage.shoot(gpu, ALL)?;
+        let (tiles, nodes_of) = faded(gpu, &stage.meadow)?;
+        let input = FrameInput {
+            view: &ALL.view,
+            sun: ALL.sun,
+            exposure: Exposure::default(),
+            bodies: &bodies_at(&stage.meadow, 1.0),
+            blades: Some(BladesInput {
+                field: &stage.meadow.field,
+                wind: &stage.meadow.work.wind,
+                active: &[],
+                active_nodes: &stage.nodes.nodes,
+                billboards: Some(BillboardNodes {
+                    tiles: &tiles,
+                    nodes: &nodes_of,
+                }),
+                detail: BladeDetail {
+                    full_m: ALL.full_m,
+                    reach_m: 40.0,
+                    tuft: 1,
+                    ..BladeDetail::default()
+                },
+            }),
+            marks: &[],
+            time_s: 0.0,
+        };
+        let mut timer = PassTimer::new(gpu, 8);
+        let target = &stage.target.view;
+        stage.renderer.draw(gpu, &input, target, &mut timer)?;
+        let counts = stage.renderer.billboard_counts().unwrap_or_default();
+        hold(
+            counts.refined > 100 && counts.refined == counts.billboards,
+            format!("{counts:?}"),
+        )?;
+        let refined = stage.target.read(gpu)?;
+        let step = difference(&plain, &refined, WHOLE);
+        let (count, there) = where_changed(&[plain, refined]);
+        println!("{nodes} cut by {cut}: {step:.3} grey levels; {count} texels by {there:.2}");
+        hold(
+            step < 1.0,
+            format!("({nodes}) cut by {cut}: {step} grey levels"),
+        )?;
+    }
+    Ok(())
 }
 
 /// The last tick at which a tile is awake.
