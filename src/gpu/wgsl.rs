@@ -16,7 +16,7 @@ use crate::base::fixed::{EXP2_TABLE, LOG2_TABLE};
 use crate::base::trig::SINE_QUARTER;
 use crate::field::billboards::{
     AZIMUTH_STEPS, BILLBOARD_COUNT_WORD, BILLBOARD_WORD, CLUMP_VARIANTS, FACES_FROM, FINE_STEPS,
-    MAX_CLUMPS, MOST_TILT_TURNS, UNIT_STEP, UNIT_STEPS,
+    MAX_CLUMPS, MOST_TILT_TURNS, UNIT_STEP, UNIT_STEPS, WIND_SHARE,
 };
 use crate::field::clusters::{CLUSTER_WORD, GRID_WORD};
 use crate::field::grid::ANCHOR_CELLS;
@@ -132,6 +132,7 @@ pub const SHARED: &[WgslFile] = &[
         UNIT_STEP,
         UNIT_STEPS
     ),
+    wgsl_file!("shared/billboard_quad.wgsl", WIND_SHARE),
     wgsl_file!("shared/clusters.wgsl", CLUSTER_WORD, GRID_WORD),
     wgsl_file!("shared/contact.wgsl", FACE_MASK, NO_FACE, ON_SURFACE_M),
     wgsl_file!(
