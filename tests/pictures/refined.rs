@@ -112,9 +112,7 @@ fn faded(gpu: &Gpu, meadow: &Meadow) -> Result<Nodes, Failed> {
 pub fn refined_forms_in_the_wind_are_quads(gpu: &Gpu) -> Result<(), Failed> {
     for (nodes, cut) in [("3, 3", 1), ("4, 4", 2), ("5, 4", 3), ("9, 3", 2)] {
         let mut stage = Stage::new(gpu, &pressed(nodes, cut), 0)?;
-        let t0 = Instant::now();
         let plain = stage.shoot(gpu, ALL)?;
-        println!("plain {:?}", t0.elapsed());
         let (tiles, nodes_of) = faded(gpu, &stage.meadow)?;
         let input = FrameInput {
             view: &ALL.view,
@@ -148,11 +146,7 @@ pub fn refined_forms_in_the_wind_are_quads(gpu: &Gpu) -> Result<(), Failed> {
             counts.refined > 100 && counts.refined == counts.billboards,
             format!("{counts:?}"),
         )?;
-        let t0 = Instant::now();
         let refined = stage.target.read(gpu)?;
-        timer.collect(gpu);
-        println!("read {:?}", t0.elapsed());
-        println!("{:?}", timer.medians_ms());
         let step = difference(&plain, &refined, WHOLE);
         let (count, there) = where_changed(&[plain, refined]);
         println!("{nodes} cut by {cut}: {step:.3} grey levels; {count} texels by {there:.2}");
