@@ -20,8 +20,8 @@ fn any_touched(tile: TileRecord, reach: f32, before: bool, done: u32, sweeps: u3
         }
         for (var sweep = done + 1u; sweep <= last; sweep++) {
             let pose = pose_at(contact, f32(sweep) / f32(sweeps));
-            for (var node = BOARD_COLUMNS; node < BOARD_NODES; node++) {
-                let place = nodes[node];
+            for (var n = BOARD_COLUMNS; n < BOARD_NODES; n++) {
+                let place = node(n);
                 if before && place.y - ground_in_anchor(tile, place.x, place.z) <= PINNED_M {
                     continue;
                 }
@@ -42,8 +42,8 @@ fn any_held(tile: TileRecord, reach: f32, nearly: bool) -> bool {
             continue;
         }
         let least = select(ON_SURFACE_M, -contacts[contact].hold_m, nearly);
-        for (var node = BOARD_COLUMNS; node < BOARD_NODES; node++) {
-            if depth_at_end(contact, nodes[node]) > least {
+        for (var n = BOARD_COLUMNS; n < BOARD_NODES; n++) {
+            if depth_at_end(contact, node(n)) > least {
                 return true;
             }
         }
@@ -73,8 +73,9 @@ fn collide_billboards(
         return;
     }
     set_quad(wind_quad(tile.anchor, billboard));
+    nodes_at = row + BOARD_STATE_ROWS;
     let before = was_touched(pool[row].x);
-    take_pose_before(row, tile.anchor, billboard);
+    take_pose(row, tile.anchor, billboard, true);
     if any_touched(tile, reach, before, done, sweeps) {
         pool[row].w = tick.now;
         add_touched(Touched(group.y, place, sweeps));
@@ -86,13 +87,14 @@ fn collide_billboards(
     }
     // Held where it was pushed before, or it would recover into a part if it were let go: it keeps its
     // pose and does not recover yet.
-    var stays = any_held(tile, reach, true);
-    if !stays {
-        take_pose(row);
-        stays = any_held(tile, reach, false);
-    }
-    if stays {
-        pool[row].w = tick.now;
-        add_touched(Touched(group.y, place, 0u));
+    for (var look = 0u; look < 2u; look++) {
+        if look == 1u {
+            take_pose(row, tile.anchor, billboard, false);
+        }
+        if any_held(tile, reach, look == 0u) {
+            pool[row].w = tick.now;
+            add_touched(Touched(group.y, place, 0u));
+            return;
+        }
     }
 }

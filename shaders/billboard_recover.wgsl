@@ -7,7 +7,7 @@
 #import "shared/billboard_grid.wgsl"
 
 @group(1) @binding(1) var<storage, read> tiles: array<TileRecord>;
-@group(1) @binding(3) var<storage, read> pool: array<vec4u>;
+@group(1) @binding(3) var<storage, read_write> pool: array<vec4u>;
 @group(1) @binding(7) var<storage, read_write> drawn: array<vec4f>;
 
 @compute @workgroup_size(WORKGROUP)
@@ -29,9 +29,14 @@ fn recover_billboards(
     let first = (tile.slab * board.slots + place) * BOARD_NODES;
     if is_bent {
         set_quad(wind_quad(tile.anchor, billboard));
-        take_pose(row);
+        nodes_at = row + BOARD_STATE_ROWS;
+        take_pose(row, tile.anchor, billboard, false);
     }
-    for (var node = 0u; node < BOARD_NODES; node++) {
-        drawn[first + node] = select(vec4f(0.0), vec4f(nodes[node], 1.0), is_bent);
+    for (var n = 0u; n < BOARD_NODES; n++) {
+        var place = vec4f(0.0);
+        if is_bent {
+            place = vec4f(node(n), 1.0);
+        }
+        drawn[first + n] = place;
     }
 }

@@ -2,7 +2,7 @@
 // src/sim/springs/crumpled.rs.
 //
 // One invocation per touched billboard, sweeps and rounds in sequence. A turn runs some rounds and leaves
-// the nodes, and how far it came, to the next one. Pushing out and laying out ask the bodies at one place
+// to the next one how far it came. Pushing out and laying out ask the bodies at one place
 // only, in `meet_bodies`: software drivers pay for every inlined copy of that.
 #import "shared/billboard_grid.wgsl"
 #import "shared/contact.wgsl"
@@ -12,13 +12,14 @@
 @group(1) @binding(1) var<storage, read> tiles: array<TileRecord>;
 @group(1) @binding(3) var<storage, read_write> pool: array<vec4u>;
 
-var<private> faces: array<u32, BOARD_MOVABLE>;
 var<private> facing: vec3f;
+// First row of the billboard's offsets and faces.
+var<private> faces_at: u32;
 // Where the upper node of the segment that is being laid out was before.
 var<private> before: vec3f;
 
-fn segment(node: u32) -> Laid {
-    return Laid(nodes[node - BOARD_COLUMNS], rest_m[COLUMN], quad.lean);
+fn segment(n: u32) -> Laid {
+    return Laid(node(n - BOARD_COLUMNS), rest_m[COLUMN], quad.lean);
 }
 
 // Asks one part about a node, and pushes it out and a little aside or (`laying`) turns it out. Returns
@@ -28,39 +29,41 @@ fn meet_part(
     contact: u32,
     pose: Pose,
     share: f32,
-    node: u32,
+    n: u32,
     laying: bool,
 ) -> bool {
-    let n = node - BOARD_COLUMNS;
-    let laid = segment(node);
+    let laid = segment(n);
+    let place = node(n);
+    let at = faces_at + n - BOARD_COLUMNS;
     let reach = Reach(laid.start, select(-1.0, laid.length, laying), before);
-    let exit = way_out(contact, pose, share, nodes[node], faces[n], reach);
+    let exit = way_out(contact, pose, share, place, pool[at].w, reach);
     if exit.face == NO_FACE {
         return false;
     }
-    faces[n] = contacts[contact].key | ((exit.face + 1u) & FACE_MASK);
+    pool[at].w = contacts[contact].key | ((exit.face + 1u) & FACE_MASK);
     let normal = rotate(pose.turn, exit.normal);
     var put: Put;
     if laying {
-        put = turned_out(tile, laid, nodes[node], normal, exit.depth);
+        put = turned_out(tile, laid, place, normal, exit.depth);
     } else {
         let aside = facing * (exit.depth * PUSH_ASIDE);
         let to_side = select(aside, -aside, dot(facing, normal) < 0.0);
-        put = pushed_out(tile, nodes[node], normal, exit.depth, to_side);
+        put = pushed_out(tile, place, normal, exit.depth, to_side);
     }
-    nodes[node] = put.node;
+    set_node(n, put.node);
     return put.moved;
 }
 
-// A node at the rest length from the one below it, in its direction.
-fn laid_out(node: u32) -> vec3f {
-    let laid = segment(node);
-    let along = nodes[node] - laid.start;
+// A node at the rest length from the one below it, in its direction, and not in the ground.
+fn laid_out(tile: TileRecord, n: u32) -> vec3f {
+    let laid = segment(n);
+    let along = node(n) - laid.start;
     let square = dot(along, along);
+    var place = laid.start + laid.rest * laid.length;
     if square > BOARD_POINT_M2 && square < FARTHEST_M * FARTHEST_M {
-        return laid.start + along * (laid.length / sqrt(square));
+        place = laid.start + along * (laid.length / sqrt(square));
     }
-    return laid.start + laid.rest * laid.length;
+    return lay_on_ground(tile, laid, place);
 }
 
 // Pushes every node out of every part in reach, part after part; or, `laying`, lays columns out at their
@@ -80,13 +83,12 @@ fn meet_bodies(tile: TileRecord, plant_reach: f32, share: f32, laying: bool) -> 
     for (var step = 0u; step < looks * BOARD_MOVABLE; step++) {
         let look = select(step / BOARD_MOVABLE, step % looks, laying);
         let part = look % parts;
-        let node = BOARD_COLUMNS + select(step % BOARD_MOVABLE, step / looks, laying);
+        let n = BOARD_COLUMNS + select(step % BOARD_MOVABLE, step / looks, laying);
         if laying && look == 0u {
             asked_since = 0u;
             turned = false;
-            before = nodes[node];
-            nodes[node] = laid_out(node);
-            nodes[node] = lay_on_ground(tile, segment(node), nodes[node]);
+            before = node(n);
+            set_node(n, laid_out(tile, n));
         }
         let contact = tile.first_contact + part;
         asked_since++;
@@ -97,15 +99,15 @@ fn meet_bodies(tile: TileRecord, plant_reach: f32, share: f32, laying: bool) -> 
             near = reaches(contact, quad.root, plant_reach);
             radius = contacts[contact].radius_m;
         }
-        let apart = nodes[node] - pose.place;
+        let apart = node(n) - pose.place;
         let may_hold = asked && near && dot(apart, apart) <= radius * radius;
-        if may_hold && meet_part(tile, contact, pose, share, node, laying) {
+        if may_hold && meet_part(tile, contact, pose, share, n, laying) {
             pushed = true;
             turned = true;
             asked_since = 0u;
         }
         if laying && look + 1u == looks {
-            nodes[node] = lay_on_ground(tile, segment(node), nodes[node]);
+            set_node(n, lay_on_ground(tile, segment(n), node(n)));
         }
     }
     return pushed;
@@ -122,13 +124,14 @@ fn measure(bend_weight: f32) -> Measured {
     var twice_energy = 0.0;
     var strain = 0.0;
     for (var later = BOARD_COLUMNS; later < BOARD_NODES; later++) {
+        let place = node(later);
         for (var k = 0u; k < EARLIER; k++) {
             let earlier = neighbour_at(later, k);
             if earlier.node == NO_NODE {
                 continue;
             }
             let rest = rest_m[earlier.side];
-            let longer = length(nodes[earlier.node] - nodes[later]) - rest;
+            let longer = length(node(earlier.node) - place) - rest;
             if is_bend(earlier.side) {
                 twice_energy += longer * longer * bend_weight;
                 continue;
@@ -145,20 +148,21 @@ fn measure(bend_weight: f32) -> Measured {
 // One descending pass: each movable node in turn moves against the gradient of its springs, by a share over
 // their number, which cannot raise the energy.
 fn descend(shape: f32, bend_weight: f32) {
-    for (var node = BOARD_COLUMNS; node < BOARD_NODES; node++) {
+    for (var n = BOARD_COLUMNS; n < BOARD_NODES; n++) {
+        let place = node(n);
         var down = vec3f(0.0);
         var count = 0.0;
         for (var k = 0u; k < AROUND; k++) {
-            let other = neighbour_at(node, k);
+            let other = neighbour_at(n, k);
             if other.node == NO_NODE {
                 continue;
             }
-            let apart = nodes[node] - nodes[other.node];
+            let apart = place - node(other.node);
             let weight = select(1.0, bend_weight, is_bend(other.side));
             down += apart * (longer_share(apart, other.side) * weight);
             count += 1.0;
         }
-        nodes[node] -= down * (shape / count);
+        set_node(n, place - down * (shape / count));
     }
 }
 
@@ -166,9 +170,9 @@ fn descend(shape: f32, bend_weight: f32) {
 // instead, or none.
 fn relax_springs(shape: f32, bend: f32, energy: f32) {
     let bend_weight = select(1.0, bend / shape, bend < shape);
-    start = nodes;
+    keep_nodes();
     for (var way = 0u; way < 2u; way++) {
-        for (var n = 0u; n < board.passes; n++) {
+        for (var passed = 0u; passed < board.passes; passed++) {
             if way == 0u {
                 pull_springs(shape, bend);
             } else {
@@ -178,7 +182,7 @@ fn relax_springs(shape: f32, bend: f32, energy: f32) {
         if measure(bend_weight).energy <= energy {
             return;
         }
-        nodes = start;
+        take_back_nodes();
     }
 }
 
@@ -192,13 +196,13 @@ fn look_lost() -> bool {
             if earlier.node == NO_NODE {
                 continue;
             }
-            let apart = length(nodes[earlier.node] - nodes[later]);
+            let apart = length(node(earlier.node) - node(later));
             total += apart;
             least = min(least, apart - CRUMPLED_SHARE * rest_m[earlier.side]);
         }
         if (later + 1u) % BOARD_COLUMNS != 0u {
             let below = later - BOARD_COLUMNS;
-            least = min(least, dot(nodes[later + 1u] - nodes[later], nodes[below + 1u] - nodes[below]));
+            least = min(least, dot(node(later + 1u) - node(later), node(below + 1u) - node(below)));
         }
     }
     return least < 0.0 || !(total < FARTHEST_M);
@@ -209,19 +213,19 @@ fn put_in_order() {
     if !look_lost() {
         return;
     }
-    start = nodes;
+    keep_nodes();
     for (var later = BOARD_COLUMNS; later < BOARD_NODES; later++) {
         for (var k = 0u; k < EARLIER; k++) {
             let earlier = neighbour_at(later, k);
             if earlier.node == NO_NODE {
                 continue;
             }
-            let was = length(start[earlier.node] - start[later]);
-            let now_apart = length(nodes[earlier.node] - nodes[later]);
+            let was = length(kept(earlier.node) - kept(later));
+            let now_apart = length(node(earlier.node) - node(later));
             let keeps = was >= CRUMPLED_SHARE * rest_m[earlier.side] && was < FARTHEST_M;
             if !keeps || !(now_apart < FARTHEST_M) {
                 let offset = rest_node(quad, later) - rest_node(quad, earlier.node);
-                nodes[later] = nodes[earlier.node] + offset;
+                set_node(later, node(earlier.node) + offset);
                 break;
             }
         }
@@ -232,23 +236,18 @@ fn put_in_order() {
 // True where the edge from a node to its right one, as it was, runs against the edge below it.
 fn runs_against(left: u32) -> bool {
     let below = left - BOARD_COLUMNS;
-    return dot(start[left + 1u] - start[left], nodes[below + 1u] - nodes[below]) < 0.0;
+    return dot(kept(left + 1u) - kept(left), node(below + 1u) - node(below)) < 0.0;
 }
 
 fn turn_back() {
-    start = nodes;
-    for (var node = BOARD_COLUMNS; node < BOARD_NODES; node++) {
-        let column = node % BOARD_COLUMNS;
-        var against = false;
-        if column > 0u {
-            against = runs_against(node - 1u);
-        }
-        if column + 1u < BOARD_COLUMNS && !against {
-            against = runs_against(node);
-        }
+    keep_nodes();
+    for (var n = BOARD_COLUMNS; n < BOARD_NODES; n++) {
+        let column = n % BOARD_COLUMNS;
+        var against = column > 0u && runs_against(n - 1u);
+        against = against || (column + 1u < BOARD_COLUMNS && runs_against(n));
         if against {
-            let below = node - BOARD_COLUMNS;
-            nodes[node] = nodes[below] + (rest_node(quad, node) - rest_node(quad, below));
+            let below = n - BOARD_COLUMNS;
+            set_node(n, node(below) + (rest_node(quad, n) - rest_node(quad, below)));
         }
     }
 }
@@ -258,41 +257,48 @@ struct Progress {
     // Sweeps done, and rounds of the next one.
     sweep: u32,
     round: u32,
+    // Energy of the springs after them.
+    energy: f32,
     // Most rounds that a sweep took.
     most: u32,
 }
 
+// 2a of springs of this rate over a sub-step, in one of so many sweeps.
+fn twice_a(rate_step: f32, sweeps: u32) -> f32 {
+    let rate = rate_step / f32(sweeps);
+    return 2.0 * (rate / (1.0 + 2.0 * rate));
+}
+
 // Runs rounds, as many as a turn has.
-fn respond(tile: TileRecord, reach: f32, sweeps: u32, from_: Progress) -> Progress {
-    var at = from_;
+fn respond(tile: TileRecord, reach: f32, sweeps: u32, come: Progress) -> Progress {
+    var at = come;
     if at.sweep >= sweeps {
         return at;
     }
-    let rate = board.rate_step / f32(sweeps);
-    let bend_rate = board.bend_step / f32(sweeps);
-    let shape = 2.0 * (rate / (1.0 + 2.0 * rate));
-    let bend = 2.0 * (bend_rate / (1.0 + 2.0 * bend_rate));
+    let shape = twice_a(board.rate_step, sweeps);
+    let bend = twice_a(board.bend_step, sweeps);
     let bend_weight = select(1.0, bend / shape, bend < shape);
     // A step meets the bodies once: round 0 is the first push, which decides whether any round follows.
     for (var step = 0u; step < board.relax_rounds && at.sweep < sweeps; step++) {
         let share = f32(at.sweep + 1u) / f32(sweeps);
         let laying = at.round > 0u;
         if laying {
-            relax_springs(shape, bend, measure(bend_weight).energy);
+            relax_springs(shape, bend, at.energy);
         }
         let pushed = meet_bodies(tile, reach, share, laying);
-        if !laying {
-            if pushed {
-                put_in_order();
-                at.round = 1u;
-            } else {
-                at.sweep++;
-            }
+        if !laying && !pushed {
+            at.sweep++;
             continue;
         }
+        if !laying {
+            put_in_order();
+        }
+        let measured = measure(bend_weight);
+        at.energy = measured.energy;
         at.most = max(at.most, at.round);
-        let is_done = at.round >= board.fewest_rounds
-            && measure(bend_weight).strain <= board.strain_limit;
+        let is_done = laying
+            && at.round >= board.fewest_rounds
+            && measured.strain <= board.strain_limit;
         if is_done || at.round >= board.most_rounds {
             at.sweep++;
             at.round = 0u;
@@ -324,40 +330,33 @@ fn relax_billboards(
     let billboard = board_at(tile.slab, entry.place);
     set_quad(wind_quad(tile.anchor, billboard));
     facing = quad_normal();
-    let is_first = turn() == 0u;
-    var from_ = Progress(state.y, state.z, 0u);
-    if is_first {
-        from_ = Progress(0u, 0u, 0u);
-        take_pose_before(row, tile.anchor, billboard);
-    }
-    // What is back in the wind has no memory of faces, whenever its tile gave its slab back.
-    let forgets = is_first && is_back(tick.now - state.x);
-    for (var node = 0u; node < BOARD_NODES; node++) {
-        if node < BOARD_COLUMNS {
-            nodes[node] = rest_node(quad, node);
-            continue;
+    nodes_at = row + BOARD_STATE_ROWS;
+    faces_at = row + 1u;
+    var come = Progress(state.y >> 16u, state.y & 0xffffu, bitcast<f32>(state.z), 0u);
+    if turn() == 0u {
+        come = Progress(0u, 0u, 0.0, 0u);
+        take_pose(row, tile.anchor, billboard, true);
+        // What is back in the wind has no memory of faces, whenever its tile gave its slab back.
+        let forgets = is_back(tick.now - state.x);
+        for (var n = 0u; n < BOARD_NODES; n++) {
+            if n < BOARD_COLUMNS {
+                set_node(n, rest_node(quad, n));
+            } else if forgets {
+                pool[faces_at + n - BOARD_COLUMNS].w = 0u;
+            }
         }
-        let stored = pool[row + 1u + node - BOARD_COLUMNS];
-        if !is_first {
-            nodes[node] = bitcast<vec3f>(stored.xyz);
-        }
-        faces[node - BOARD_COLUMNS] = select(stored.w, 0u, forgets);
     }
-    let at = respond(tile, board_reach(billboard), entry.sweeps, from_);
+    let at = respond(tile, board_reach(billboard), entry.sweeps, come);
     atomicMax(&touched[1], at.most);
-    let is_last = at.sweep >= entry.sweeps;
-    for (var node = BOARD_COLUMNS; node < BOARD_NODES; node++) {
-        var kept = nodes[node];
-        if is_last {
-            kept -= rest_node(quad, node);
-        }
-        let n = node - BOARD_COLUMNS;
-        pool[row + 1u + n] = vec4u(bitcast<vec3u>(kept), faces[n]);
-    }
     tell_if_cut_short(BOARD_ROWS);
-    if is_last {
-        pool[row] = vec4u(tick.now, 0u, 0u, 0u);
-    } else {
-        pool[row] = vec4u(state.x, at.sweep, at.round, tick.now);
+    if at.sweep < entry.sweeps {
+        pool[row] = vec4u(state.x, (at.sweep << 16u) | at.round, bitcast<u32>(at.energy), tick.now);
+        return;
     }
+    for (var n = BOARD_COLUMNS; n < BOARD_NODES; n++) {
+        let place = faces_at + n - BOARD_COLUMNS;
+        let offset = node(n) - rest_node(quad, n);
+        pool[place] = vec4u(bitcast<vec3u>(offset), pool[place].w);
+    }
+    pool[row] = vec4u(tick.now, 0u, 0u, 0u);
 }

@@ -26,9 +26,33 @@ const FARTHEST_M = 1e18;
 // In the wind of now.
 var<private> quad: WindQuad;
 var<private> rest_m: array<f32, 6>;
-var<private> nodes: array<vec3f, BOARD_NODES>;
-// Nodes before the springs, or before lengths are restored.
-var<private> start: array<vec3f, BOARD_NODES>;
+// First row of the billboard's nodes in the pool.
+var<private> nodes_at: u32;
+
+fn node(n: u32) -> vec3f {
+    return bitcast<vec3f>(pool[nodes_at + n].xyz);
+}
+
+fn set_node(n: u32, place: vec3f) {
+    pool[nodes_at + n] = vec4u(bitcast<vec3u>(place), 0u);
+}
+
+// A node as it was when `keep_nodes` was called.
+fn kept(n: u32) -> vec3f {
+    return bitcast<vec3f>(pool[nodes_at + BOARD_NODES + n].xyz);
+}
+
+fn keep_nodes() {
+    for (var n = 0u; n < BOARD_NODES; n++) {
+        pool[nodes_at + BOARD_NODES + n] = pool[nodes_at + n];
+    }
+}
+
+fn take_back_nodes() {
+    for (var n = 0u; n < BOARD_NODES; n++) {
+        pool[nodes_at + n] = pool[nodes_at + BOARD_NODES + n];
+    }
+}
 
 fn set_quad(of_now: WindQuad) {
     quad = of_now;
@@ -43,9 +67,9 @@ fn set_quad(of_now: WindQuad) {
 }
 
 // A node of the grid of a quad.
-fn rest_node(of_quad: WindQuad, node: u32) -> vec3f {
-    let column = f32(node % BOARD_COLUMNS) / f32(BOARD_COLUMNS - 1u);
-    let row = f32(node / BOARD_COLUMNS) / f32(BOARD_ROWS - 1u);
+fn rest_node(of_quad: WindQuad, n: u32) -> vec3f {
+    let column = f32(n % BOARD_COLUMNS) / f32(BOARD_COLUMNS - 1u);
+    let row = f32(n / BOARD_COLUMNS) / f32(BOARD_ROWS - 1u);
     return quad_place(of_quad, vec2f(column, row));
 }
 
@@ -55,59 +79,26 @@ struct Neighbour {
     side: u32,
 }
 
-fn neighbour(node: u32, steps: vec2i, side: u32) -> Neighbour {
-    let column = i32(node % BOARD_COLUMNS) + steps.x;
-    let row = i32(node / BOARD_COLUMNS) + steps.y;
-    let is_bend = side == ROW_BEND || side == COLUMN_BEND;
-    let is_there = column >= 0
-        && column < i32(BOARD_COLUMNS)
-        && row >= 0
-        && row < i32(BOARD_ROWS)
-        && (BOARD_BENDS == 1u || !is_bend);
-    let there = u32(row) * BOARD_COLUMNS + u32(column);
-    return Neighbour(select(NO_NODE, there, is_there), side);
+// Columns and rows to the k-th neighbour, each 2 more than it is, and its side: four bits each.
+const STEPS_X = vec2u(0x43103212u, 0x2321u);
+const STEPS_Y = vec2u(0x22221110u, 0x4333u);
+const NEIGHBOUR_SIDES = vec2u(0x40043125u, 0x5213u);
+
+fn of_neighbour(words: vec2u, k: u32) -> u32 {
+    let word = select(words.y, words.x, k < 8u);
+    return (word >> ((k & 7u) * 4u)) & 15u;
 }
 
-// The k-th neighbour of a node: the first EARLIER are those before it.
-fn neighbour_at(node: u32, k: u32) -> Neighbour {
-    switch k {
-        case 0u: {
-            return neighbour(node, vec2i(0, -2), COLUMN_BEND);
-        }
-        case 1u: {
-            return neighbour(node, vec2i(-1, -1), RISING);
-        }
-        case 2u: {
-            return neighbour(node, vec2i(0, -1), COLUMN);
-        }
-        case 3u: {
-            return neighbour(node, vec2i(1, -1), FALLING);
-        }
-        case 4u: {
-            return neighbour(node, vec2i(-2, 0), ROW_BEND);
-        }
-        case 5u: {
-            return neighbour(node, vec2i(-1, 0), ROW);
-        }
-        case 6u: {
-            return neighbour(node, vec2i(1, 0), ROW);
-        }
-        case 7u: {
-            return neighbour(node, vec2i(2, 0), ROW_BEND);
-        }
-        case 8u: {
-            return neighbour(node, vec2i(-1, 1), FALLING);
-        }
-        case 9u: {
-            return neighbour(node, vec2i(0, 1), COLUMN);
-        }
-        case 10u: {
-            return neighbour(node, vec2i(1, 1), RISING);
-        }
-        default: {
-            return neighbour(node, vec2i(0, 2), COLUMN_BEND);
-        }
-    }
+// The k-th neighbour of a node, by number: the first EARLIER are those before it.
+fn neighbour_at(n: u32, k: u32) -> Neighbour {
+    let side = of_neighbour(NEIGHBOUR_SIDES, k);
+    let column = n % BOARD_COLUMNS + of_neighbour(STEPS_X, k) - 2u;
+    let row = n / BOARD_COLUMNS + of_neighbour(STEPS_Y, k) - 2u;
+    // Below 0 is far above.
+    let is_there = column < BOARD_COLUMNS
+        && row < BOARD_ROWS
+        && (BOARD_BENDS == 1u || !is_bend(side));
+    return Neighbour(select(NO_NODE, row * BOARD_COLUMNS + column, is_there), side);
 }
 
 fn is_bend(side: u32) -> bool {
@@ -126,35 +117,37 @@ fn longer_share(apart: vec3f, side: u32) -> f32 {
 // One sequential pass over the springs, by 2a of those of O09 and of the bend springs.
 fn pull_springs(shape: f32, bend: f32) {
     for (var later = BOARD_COLUMNS; later < BOARD_NODES; later++) {
+        var place = node(later);
         for (var k = 0u; k < EARLIER; k++) {
             let earlier = neighbour_at(later, k);
             if earlier.node == NO_NODE {
                 continue;
             }
-            let apart = nodes[earlier.node] - nodes[later];
+            let other = node(earlier.node);
+            let apart = other - place;
             let pull = select(shape, bend, is_bend(earlier.side));
-            let longer = longer_share(apart, earlier.side);
-            if earlier.node >= BOARD_COLUMNS {
-                nodes[earlier.node] -= apart * (longer * (pull * 0.5));
-                nodes[later] += apart * (longer * (pull * 0.5));
-            } else {
-                // Beside a pinned node the later one has all of it.
-                nodes[later] += apart * (longer * pull);
+            // Beside a pinned node the later one has all of it.
+            let is_pinned = earlier.node < BOARD_COLUMNS;
+            let by = apart * (longer_share(apart, earlier.side) * select(pull * 0.5, pull, is_pinned));
+            place += by;
+            if !is_pinned {
+                set_node(earlier.node, other - by);
             }
         }
+        set_node(later, place);
     }
 }
 
-// Gives the segments of every column their rest length, keeping the directions they have in `start`. One
-// that was turned right over takes the side that the quad faces.
+// Gives the segments of every column their rest length, keeping the directions of the nodes that are kept.
+// One that was turned right over takes the side that the quad faces.
 fn restore_lengths(facing: vec3f) {
     let column_m = rest_m[COLUMN];
-    for (var node = BOARD_COLUMNS; node < BOARD_NODES; node++) {
-        let below = node - BOARD_COLUMNS;
-        var along = start[node] - start[below];
+    for (var n = BOARD_COLUMNS; n < BOARD_NODES; n++) {
+        let below = n - BOARD_COLUMNS;
+        var along = kept(n) - kept(below);
         let square = dot(along, along);
         if square > 0.25 * column_m * column_m {
-            nodes[node] = nodes[below] + along * (column_m / sqrt(square));
+            set_node(n, node(below) + along * (column_m / sqrt(square)));
             continue;
         }
         let small = ASIDE * column_m;
@@ -162,7 +155,7 @@ fn restore_lengths(facing: vec3f) {
         if dot(off_line, off_line) < small * small {
             along += facing * small;
         }
-        nodes[node] = nodes[below] + unit_or(along, quad.lean) * column_m;
+        set_node(n, node(below) + unit_or(along, quad.lean) * column_m);
     }
 }
 
@@ -172,46 +165,36 @@ fn quad_normal() -> vec3f {
     return unit_or(cross(quad.across, quad.lean), level);
 }
 
-// Nodes as they are now, of a billboard whose state begins at `row`; `quad` is set before.
-fn take_pose(row: u32) {
+// Lays out the nodes of a billboard whose state begins at `row`, as they are now; `before`, as bodies meet
+// them in this sub-step: as they were left if it was touched in the sub-step before, wherever the wind has
+// gone since. `quad` is set before.
+fn take_pose(row: u32, anchor: vec2u, billboard: Billboard, before: bool) {
     let touched_at = pool[row].x;
+    let is_left = before && was_touched(touched_at);
+    var of_pose = quad;
     var left = 0.0;
-    if touched_at != 0u {
+    if is_left {
+        of_pose = bent_quad(billboard, billboard_bend_by(tick.wind_before, anchor, billboard));
+        left = 1.0;
+    } else if touched_at != 0u {
         left = offset_left(tick.now - touched_at);
     }
-    for (var node = 0u; node < BOARD_NODES; node++) {
-        nodes[node] = rest_node(quad, node);
-        if node >= BOARD_COLUMNS && left > 0.0 {
-            let offset = pool[row + 1u + node - BOARD_COLUMNS].xyz;
-            nodes[node] += bitcast<vec3f>(offset) * left;
+    for (var n = 0u; n < BOARD_NODES; n++) {
+        var place = rest_node(of_pose, n);
+        if n >= BOARD_COLUMNS && left > 0.0 {
+            place += bitcast<vec3f>(pool[row + 1u + n - BOARD_COLUMNS].xyz) * left;
         }
+        set_node(n, place);
     }
-    if left <= 0.0 || touched_at == tick.now {
+    if is_left || left <= 0.0 || touched_at == tick.now {
         return;
     }
     let facing = quad_normal();
-    for (var pass_ = 0u; pass_ <= BOARD_RECOVER_PASSES; pass_++) {
-        if pass_ > 0u {
+    for (var passed = 0u; passed <= BOARD_RECOVER_PASSES; passed++) {
+        if passed > 0u {
             pull_springs(0.5, 0.0);
         }
-        start = nodes;
+        keep_nodes();
         restore_lengths(facing);
-    }
-}
-
-// Nodes as bodies meet them in this sub-step: as they were left if the billboard was touched in the
-// sub-step before, wherever the wind has gone since. `quad` is set before.
-fn take_pose_before(row: u32, anchor: vec2u, billboard: Billboard) {
-    if !was_touched(pool[row].x) {
-        take_pose(row);
-        return;
-    }
-    let before = bent_quad(billboard, billboard_bend_by(tick.wind_before, anchor, billboard));
-    for (var node = 0u; node < BOARD_NODES; node++) {
-        nodes[node] = rest_node(before, node);
-        if node >= BOARD_COLUMNS {
-            let offset = pool[row + 1u + node - BOARD_COLUMNS].xyz;
-            nodes[node] += bitcast<vec3f>(offset);
-        }
     }
 }

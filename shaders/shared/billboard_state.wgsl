@@ -1,11 +1,13 @@
 // What is kept of the billboards of active tiles, and the numbers of a sub-step. Host: src/gpu/billboards.rs.
 //
 // A slab of the pool has room for `slots` billboards. First come their records, two rows each, all zero where
-// nothing grows; then the states, BOARD_STATE_ROWS rows each: one with the tick of the last contact
-// (0: never) in x, then one per movable node, the lowest row of them first: offset from the quad in the
-// wind as three floats' bits, and the word about the face that the node was pushed out through.
-// Between turns of `relax` a state's first row has sweeps done in y, rounds of the next one in z, and the
-// nodes are there instead of offsets; in w is the tick of a billboard that is on the list of touched ones.
+// nothing grows; then what is kept of each, BOARD_ROWS_EACH rows: one with the tick of the last contact
+// (0: never) in x; then one per movable node, the lowest row of them first: offset from the quad in the
+// wind as three floats' bits, and the word about the face that the node was pushed out through; then
+// places of all nodes and the same before springs or lengths, to work with: drivers that keep arrays in
+// registers, as software does, would write out a choice among all of them wherever one is asked for.
+// Between turns of `relax` the first row has sweeps done and rounds of the next one in the halves of y, the
+// energy of the springs in z, and in w the tick of a billboard that is on the list of touched ones.
 #import "shared/billboard.wgsl"
 
 struct BoardUniform {
@@ -30,15 +32,16 @@ struct BoardUniform {
 const BOARD_NODES = BOARD_COLUMNS * BOARD_ROWS;
 const BOARD_MOVABLE = BOARD_NODES - BOARD_COLUMNS;
 const BOARD_STATE_ROWS = BOARD_MOVABLE + 1u;
+const BOARD_ROWS_EACH = BOARD_STATE_ROWS + 2u * BOARD_NODES;
 const BOARD_RECORD_ROWS = 2u;
 
 fn first_row(slab: u32) -> u32 {
-    return slab * board.slots * (BOARD_RECORD_ROWS + BOARD_STATE_ROWS);
+    return slab * board.slots * (BOARD_RECORD_ROWS + BOARD_ROWS_EACH);
 }
 
-// First row of a billboard's state.
+// First row of what is kept of a billboard.
 fn board_row(slab: u32, place: u32) -> u32 {
-    return first_row(slab) + board.slots * BOARD_RECORD_ROWS + place * BOARD_STATE_ROWS;
+    return first_row(slab) + board.slots * BOARD_RECORD_ROWS + place * BOARD_ROWS_EACH;
 }
 
 // The billboard at rest; one without a height is not there.

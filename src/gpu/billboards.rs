@@ -110,13 +110,14 @@ impl GpuBillboards {
         Ok(Some(boards))
     }
 
-    fn state_rows(&self) -> usize {
-        1 + self.weave.grid.movable()
+    /// Rows of what is kept of a billboard: its state, then two of every node to work with.
+    fn rows_each(&self) -> usize {
+        1 + self.weave.grid.movable() + 2 * self.weave.grid.nodes()
     }
 
     /// Rows of a slab of the pool.
     fn slab_rows(&self) -> usize {
-        self.slots * (RECORD_ROWS + self.state_rows())
+        self.slots * (RECORD_ROWS + self.rows_each())
     }
 
     /// Rows of a slab of the drawn nodes.
@@ -254,7 +255,7 @@ impl GpuBillboards {
         let tiles = &meadow.work.tiles;
         let high = tiles.iter().map(|tile| tile.slab as usize + 1).max();
         let mut slabs = vec![None; high.unwrap_or(0)];
-        let of_tiles = rows.chunks_exact(self.slots * self.state_rows());
+        let of_tiles = rows.chunks_exact(self.slots * self.rows_each());
         for (tile, rows) in tiles.iter().zip(of_tiles) {
             let count = meadow.field.billboards_in(tile.tile).len();
             slabs[tile.slab as usize] = (count > 0).then(|| self.slab_of(count, rows));
@@ -265,9 +266,9 @@ impl GpuBillboards {
     fn slab_of(&self, count: usize, rows: &[[u32; 4]]) -> Slab<f32> {
         let movable = self.weave.grid.movable();
         let mut slab = Slab::new(count, movable);
-        for (place, rows) in rows.chunks_exact(self.state_rows()).take(count).enumerate() {
+        for (place, rows) in rows.chunks_exact(self.rows_each()).take(count).enumerate() {
             slab.touched_at[place] = rows[0][0];
-            for (n, &[x, y, z, face]) in rows[1..].iter().enumerate() {
+            for (n, &[x, y, z, face]) in rows[1..=movable].iter().enumerate() {
                 let at = place * movable + n;
                 slab.offsets[at] = Vec3::of_f32([x, y, z].map(f32::from_bits));
                 slab.faces[at] = face;
@@ -292,7 +293,7 @@ impl GpuBillboards {
     ) -> Result<(), GpuError> {
         self.copy_records(encoder, meadow, tile, number);
         let movable = self.weave.grid.movable();
-        let mut rows = Vec::with_capacity(slab.touched_at.len() * self.state_rows());
+        let mut rows = Vec::with_capacity(slab.touched_at.len() * self.rows_each());
         for (place, &touched_at) in slab.touched_at.iter().enumerate() {
             rows.push([touched_at, 0, 0, 0]);
             let nodes = place * movable..(place + 1) * movable;
@@ -300,6 +301,7 @@ impl GpuBillboards {
                 let [x, y, z] = offset.to_f32().map(f32::to_bits);
                 rows.push([x, y, z, *face]);
             }
+            rows.resize((place + 1) * self.rows_each(), [0; 4]);
         }
         let first = number as usize * self.slab_rows() + self.slots * RECORD_ROWS;
         self.buffers.pool.write(gpu, first, &rows)

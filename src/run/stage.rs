@@ -5,8 +5,9 @@ use std::sync::Arc;
 use crate::bodies::Bodies;
 use crate::gpu::{Gpu, GpuError, GrassKernels, PassTimer, TickError};
 use crate::render::{
-    ActiveNodes, BladeCounts, BladeDetail, BladesInput, Exposure, FrameInput, GroundLook,
-    RenderError, Renderer, Sun, View, active_slabs, bodies_at, scene_view, tile_marks,
+    ActiveBillboards, ActiveNodes, BillboardCounts, BladeCounts, BladeDetail, BladesInput,
+    Exposure, FrameInput, GroundLook, RenderError, Renderer, Sun, View, active_slabs, bodies_at,
+    scene_view, tile_marks,
 };
 use crate::scene::assets::Assets;
 use crate::scene::{Action, Camera, Likes, LoadedScene};
@@ -30,6 +31,7 @@ pub struct Stage {
     engine: Engine,
     /// What the cpu engine's grass is drawn from.
     nodes: ActiveNodes,
+    billboards: ActiveBillboards,
     renderer: Renderer,
     kernels: GrassKernels,
     timer: PassTimer,
@@ -39,6 +41,8 @@ pub struct Stage {
     pub sun: Sun,
     pub exposure: Exposure,
     pub detail: BladeDetail,
+    /// Whether the overlay has boxes around tiles at rest, too; without them it is that of figure 8 of O09.
+    pub resting_boxes: bool,
 }
 
 /// Why a stage cannot be set or shown.
@@ -108,12 +112,14 @@ impl Stage {
         show(gpu, &mut renderer, &meadow, &loaded.assets)?;
         Ok(Self {
             nodes: ActiveNodes::new(gpu)?,
+            billboards: ActiveBillboards::new(gpu)?,
             timer: PassTimer::new(gpu, DRAWN_PASSES),
             timeline: new_timeline(&meadow),
             shapes: known_shapes(&meadow.bodies),
             sun: Sun::default(),
             exposure: Exposure::default(),
             detail: BladeDetail::of_device(gpu),
+            resting_boxes: true,
             loaded: loaded.clone(),
             meadow,
             engine,
@@ -253,8 +259,14 @@ impl Stage {
         self.take_in_shapes(gpu)?;
         let meadow = &self.meadow;
         match &mut self.engine {
-            Engine::Cpu(grass) => self.nodes.copy(gpu, meadow, grass)?,
-            Engine::Reference(grass) => self.nodes.copy(gpu, meadow, grass.as_ref())?,
+            Engine::Cpu(grass) => {
+                self.nodes.copy(gpu, meadow, grass)?;
+                self.billboards.copy(gpu, meadow, grass)?;
+            }
+            Engine::Reference(grass) => {
+                self.nodes.copy(gpu, meadow, grass.as_ref())?;
+                self.billboards.copy(gpu, meadow, grass.as_ref())?;
+            }
             Engine::Gpu(engine) => engine.grass.recover()?,
         }
         let slabs = active_slabs(meadow);
@@ -263,7 +275,7 @@ impl Stage {
             Engine::Gpu(engine) => (&slabs, engine.grass.drawn()),
         };
         let marks = if overlay {
-            tile_marks(meadow, view.eye_in_world)
+            tile_marks(meadow, self.resting_boxes.then_some(view.eye_in_world))
         } else {
             Vec::new()
         };
@@ -278,12 +290,18 @@ impl Stage {
                 wind: &meadow.work.wind,
                 active,
                 active_nodes,
+                billboards: Some(self.billboards.drawn()),
                 detail: self.detail,
             }),
             marks: &marks,
             time_s: meadow.time_s(),
         };
         Ok(self.renderer.draw(gpu, &input, target, &mut self.timer)?)
+    }
+
+    /// What the last picture drew of the billboards; `None` in a scene without them.
+    pub fn billboard_counts(&self) -> Option<BillboardCounts> {
+        self.renderer.billboard_counts()
     }
 
     /// What the last picture drew of the plants.

@@ -43,6 +43,10 @@ const CHECKS: &[(&str, Check)] = &[
         "ranges_of_many_tiles_are_equal",
         billboards::ranges_of_many_tiles_are_equal,
     ),
+    (
+        "quads_in_the_wind_agree",
+        billboards::quads_in_the_wind_agree,
+    ),
     ("wind_poses_agree", plants::wind_poses_agree),
     (
         "poses_about_the_knee_agree",

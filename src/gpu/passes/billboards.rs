@@ -60,7 +60,7 @@ impl BillboardPasses {
         let drawing = [
             (0, Access::Uniform),
             (1, Access::Read),
-            (3, Access::Read),
+            (3, Access::Write),
             (7, Access::Write),
             (8, Access::Uniform),
         ];
