@@ -9,7 +9,6 @@
 #import "shared/touched.wgsl"
 
 @group(1) @binding(1) var<storage, read> tiles: array<TileRecord>;
-@group(1) @binding(3) var<storage, read_write> pool: array<vec4u>;
 
 // True where a node that is not pinned is inside a part in reach, in any sweep of this turn.
 fn any_touched(tile: TileRecord, reach: f32, before: bool, done: u32, sweeps: u32) -> bool {

@@ -7,7 +7,6 @@
 #import "shared/billboard_grid.wgsl"
 
 @group(1) @binding(1) var<storage, read> tiles: array<TileRecord>;
-@group(1) @binding(3) var<storage, read_write> pool: array<vec4u>;
 @group(1) @binding(7) var<storage, read_write> drawn: array<vec4f>;
 
 @compute @workgroup_size(WORKGROUP)

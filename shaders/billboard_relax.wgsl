@@ -10,7 +10,6 @@
 #import "shared/touched.wgsl"
 
 @group(1) @binding(1) var<storage, read> tiles: array<TileRecord>;
-@group(1) @binding(3) var<storage, read_write> pool: array<vec4u>;
 
 var<private> facing: vec3f;
 // First row of the billboard's offsets and faces.

@@ -2,7 +2,6 @@
 // springs.rs, recover.rs.
 //
 // Springs are visited by their later node, and those of one by their earlier node, as their order is in Rust.
-// A shader that imports this declares `pool`.
 #import "shared/billboard_quad.wgsl"
 #import "shared/billboard_state.wgsl"
 #import "shared/recovering.wgsl"

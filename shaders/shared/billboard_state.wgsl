@@ -27,6 +27,7 @@ struct BoardUniform {
     spare_b: vec2u,
 }
 
+@group(1) @binding(3) var<storage, read_write> pool: array<vec4u>;
 @group(1) @binding(8) var<uniform> board: BoardUniform;
 
 const BOARD_NODES = BOARD_COLUMNS * BOARD_ROWS;

@@ -78,7 +78,9 @@ impl GpuGrass {
         let mut state = GpuState::default();
         let high = slabs.iter().map(|&slab| slab as usize + 1).max();
         state.slabs.resize(high.unwrap_or(0), None);
-        for (&slab, rows) in slabs.iter().zip(rows.chunks_exact(self.slab_rows.max(1))) {
+        // Slabs of a meadow of billboards alone have no rows.
+        for (&slab, first) in slabs.iter().zip((0..).step_by(self.slab_rows.max(1))) {
+            let rows = &rows[first.min(rows.len())..][..self.slab_rows];
             state.slabs[slab as usize] = Some(unpack(rows, plants, segments));
         }
         if let Some(billboards) = &self.billboards {
