@@ -68,10 +68,14 @@ fn laid_out(tile: TileRecord, n: u32) -> vec3f {
 // Pushes every node out of every part in reach, part after part; or, `laying`, lays columns out at their
 // lengths from the ground to the top and turns their segments out of every part and of the ground.
 // Returns whether a part moved a node.
+//
+// The inner loop goes on to the next node and part that may meet, the outer one lets them: billboards that
+// run side by side wait for each other once per meeting, and not once per node and part.
 fn meet_bodies(tile: TileRecord, plant_reach: f32, share: f32, laying: bool) -> bool {
     let parts = tile.end_contact - tile.first_contact;
     // A segment that is laid out asks all parts, and then again those it has not asked since one turned it.
     let looks = parts * select(1u, LOOKS, laying && parts > 1u);
+    let steps = looks * BOARD_MOVABLE;
     var pushed = false;
     var posed = NO_FACE;
     var pose: Pose;
@@ -79,37 +83,55 @@ fn meet_bodies(tile: TileRecord, plant_reach: f32, share: f32, laying: bool) -> 
     var radius = 0.0;
     var asked_since = 0u;
     var turned = false;
-    for (var step = 0u; step < looks * BOARD_MOVABLE; step++) {
-        let look = select(step / BOARD_MOVABLE, step % looks, laying);
-        let part = look % parts;
-        let n = BOARD_COLUMNS + select(step % BOARD_MOVABLE, step / looks, laying);
-        if laying && look == 0u {
-            asked_since = 0u;
-            turned = false;
-            before = node(n);
-            set_node(n, laid_out(tile, n));
+    var n = 0u;
+    var step = 0u;
+    loop {
+        var meets = false;
+        for (; step < steps && !meets; step++) {
+            let look = select(step / BOARD_MOVABLE, step % looks, laying);
+            let part = look % parts;
+            if laying && look == 0u {
+                lay_before(tile, n);
+                asked_since = 0u;
+                turned = false;
+            }
+            n = BOARD_COLUMNS + select(step % BOARD_MOVABLE, step / looks, laying);
+            if laying && look == 0u {
+                before = node(n);
+                set_node(n, laid_out(tile, n));
+            }
+            let contact = tile.first_contact + part;
+            asked_since++;
+            let asked = look < parts || (turned && asked_since < parts);
+            if asked && posed != contact {
+                posed = contact;
+                pose = pose_at(contact, share);
+                near = reaches(contact, quad.root, plant_reach);
+                radius = contacts[contact].radius_m;
+            }
+            let apart = node(n) - pose.place;
+            meets = asked && near && dot(apart, apart) <= radius * radius;
         }
-        let contact = tile.first_contact + part;
-        asked_since++;
-        let asked = look < parts || (turned && asked_since < parts);
-        if asked && posed != contact {
-            posed = contact;
-            pose = pose_at(contact, share);
-            near = reaches(contact, quad.root, plant_reach);
-            radius = contacts[contact].radius_m;
+        if !meets {
+            break;
         }
-        let apart = node(n) - pose.place;
-        let may_hold = asked && near && dot(apart, apart) <= radius * radius;
-        if may_hold && meet_part(tile, contact, pose, share, n, laying) {
+        if meet_part(tile, posed, pose, share, n, laying) {
             pushed = true;
             turned = true;
             asked_since = 0u;
         }
-        if laying && look + 1u == looks {
-            set_node(n, lay_on_ground(tile, segment(n), node(n)));
-        }
+    }
+    if laying {
+        lay_before(tile, n);
     }
     return pushed;
+}
+
+// Lays a node that has met all parts on the ground; none is before the first.
+fn lay_before(tile: TileRecord, n: u32) {
+    if n >= BOARD_COLUMNS {
+        set_node(n, lay_on_ground(tile, segment(n), node(n)));
+    }
 }
 
 struct Measured {

@@ -121,8 +121,19 @@ impl GpuBillboards {
     }
 
     /// Rows of a slab of the drawn nodes.
-    pub fn drawn_rows(&self) -> usize {
+    fn drawn_rows(&self) -> usize {
         self.slots * self.weave.grid.nodes()
+    }
+
+    /// Active tiles that have billboards, in the order of their ids, where the rows of each begin in the
+    /// nodes as they are drawn, and those nodes, of the last [`GpuGrass::recover`](super::GpuGrass::recover).
+    pub fn drawn(&self, meadow: &Meadow) -> (Vec<(TileId, u32)>, &Buffer<[f32; 4]>) {
+        let rows = self.drawn_rows() as u32;
+        let tiles = (meadow.work.tiles.iter())
+            .filter(|tile| !meadow.field.billboards_in(tile.tile).is_empty())
+            .map(|tile| (tile.tile, tile.slab * rows))
+            .collect();
+        (tiles, &self.buffers.drawn)
     }
 
     /// Bytes of the records of all billboards, and of the slabs, lists and nodes of active tiles.

@@ -74,7 +74,7 @@ impl Found {
     fn check(&self, what: &str) -> Result<(), Failed> {
         let rms_m = (self.squares / self.nodes.max(1) as f64).sqrt();
         println!("{what}: {self:?}, rms {rms_m:.2e} m");
-        ensure(self.touched > 1000, || format!("{what}: {self:?}"))?;
+        ensure(self.touched > 500, || format!("{what}: {self:?}"))?;
         let apart = self.apart as f64 / self.nodes as f64;
         let in_one = self.touched_in_one as f64 / self.touched as f64;
         let agree = apart <= APART_SHARE && in_one <= TOUCHED_SHARE && rms_m <= RMS_M;
