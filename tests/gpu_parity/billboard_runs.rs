@@ -1,8 +1,10 @@
 //! Billboards under bodies on both engines, side by side: who is touched, and where nodes are.
 
+use std::path::Path;
+
 use libtest_mimic::Failed;
 use sward::run::Engine;
-use sward::scene::parse_scene;
+use sward::scene::{LoadedScene, load_scene, parse_scene};
 use sward::sim::Meadow;
 use sward::sim::measure::StandingBillboard;
 
@@ -12,10 +14,11 @@ use super::compare::ensure;
 /// A node that is this far from its twin is on its own way, in metres: whoever folds otherwise is
 /// centimetres away.
 const APART_M: f64 = 1e-3;
-/// Nodes of touched billboards that may be on their own way, as a share, and billboards that only one engine
-/// touches: growth directions differ by up to a step of 2⁻¹⁵ between the engines' lists, in 7% of
-/// billboards, which moves tops by 2e-5 m, and a fold goes one way or the other by less.
-const APART_SHARE: f64 = 5e-3;
+/// Nodes of touched billboards that may be on their own way, as a share: growth directions differ by up to a
+/// step of 2⁻¹⁵ between the engines' lists, in 7% of billboards, which moves tops by 2e-5 m, and which way
+/// a billboard folds hangs on less: of those under a car a third fold otherwise in the reference.
+const APART_SHARE: f64 = 0.07 / 3.0;
+/// Billboards that only one engine touches, as a share.
 const TOUCHED_SHARE: f64 = 5e-3;
 /// The others, root mean square, in metres: those steps over a height of 0.5 m, in 7% of billboards, are
 /// 4e-6 m; sheets pass them on some times larger, from row to row and round to round.
@@ -82,15 +85,20 @@ impl Found {
     }
 }
 
-/// Runs a scene on both engines and compares every billboard of active tiles, tick after tick.
 fn agree(device: &Device, nodes: &str, collide: &str) -> Result<(), Failed> {
     let loaded = parse_scene("billboards", &scene(nodes, collide), &[])?;
+    let found = compare(device, &loaded, loaded.scene.duration_s)?;
+    found.check(&format!("{nodes} nodes, {collide}"))
+}
+
+/// Runs the begin of a scene on both engines and compares every billboard of active tiles.
+fn compare(device: &Device, loaded: &LoadedScene, until_s: f64) -> Result<Found, Failed> {
     let meadow = || Meadow::new(loaded.scene.clone(), &loaded.assets);
     let (mut here, mut there) = (meadow()?, meadow()?);
     let mut cpu = Engine::cpu();
     let mut gpu = Engine::gpu(&device.gpu, &device.kernels, &mut there)?;
     let mut found = Found::default();
-    while here.time_s() + 1e-9 < loaded.scene.duration_s {
+    while here.time_s() + 1e-9 < until_s {
         cpu.tick(&mut here)?;
         gpu.tick(&mut there)?;
         if here.ticks % 6 != 0 {
@@ -105,7 +113,15 @@ fn agree(device: &Device, nodes: &str, collide: &str) -> Result<(), Failed> {
             }
         }
     }
-    found.check(&format!("{nodes} nodes, {collide}"))
+    Ok(found)
+}
+
+/// The begin of the scene of O09's measurements, in which the car falls and drives off. A whole run takes
+/// minutes on a software adapter: `sward run meadow_60k --engine gpu`.
+pub fn a_car_falls_and_drives_off_alike(device: &Device) -> Result<(), Failed> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meadow_60k.ron");
+    let found = compare(device, &load_scene(&file, &[])?, 0.9)?;
+    found.check("meadow_60k")
 }
 
 pub fn billboards_respond_alike(device: &Device) -> Result<(), Failed> {

@@ -41,6 +41,10 @@ const CHECKS: &[(&str, Check)] = &[
         billboard_runs::billboards_respond_alike,
     ),
     (
+        "a_car_falls_and_drives_off_alike",
+        billboard_runs::a_car_falls_and_drives_off_alike,
+    ),
+    (
         "sixty_thousand_billboards_are_equal",
         billboards::sixty_thousand_billboards_are_equal,
     ),
