@@ -21,6 +21,8 @@ mod clumps;
 mod coats;
 #[path = "pictures/counted.rs"]
 mod counted;
+#[path = "pictures/engines.rs"]
+mod engines;
 #[path = "pictures/ground.rs"]
 mod ground;
 #[path = "pictures/refined.rs"]
@@ -70,6 +72,11 @@ const CHECKS: &[(&str, Check)] = &[
         refined::refined_forms_in_the_wind_are_quads,
     ),
     ("measure_forms_of_clumps", refined::forms_are_timed),
+    ("both_engines_draw_alike", engines::both_engines_draw_alike),
+    (
+        "sixty_thousand_clumps_fit",
+        engines::sixty_thousand_clumps_fit,
+    ),
     ("pressed_clumps_show", refined::pressed_clumps_show),
     (
         "hidden_clumps_change_nothing",

@@ -12,19 +12,24 @@ struct WindQuad {
     lean: vec3f, // unit vector from the lower edge to the upper one
 }
 
-// Bend of the upper edge along x and z.
-fn billboard_bend(anchor: vec2u, billboard: Billboard) -> vec2f {
+// Bend of the upper edge along x and z by the wind of some instant.
+fn billboard_bend_by(then: WindUniform, anchor: vec2u, billboard: Billboard) -> vec2f {
     var tile: TileRecord;
     tile.anchor = anchor;
     var plant: Plant;
     plant.root = billboard.root;
     plant.flexibility = billboard.flexibility;
     plant.flutter_turns = billboard.flutter_turns;
-    return wind_bend(tile, plant);
+    return wind_bend_by(then, tile, plant);
 }
 
+// The quad in the wind of now.
 fn wind_quad(anchor: vec2u, billboard: Billboard) -> WindQuad {
-    let bend = billboard_bend(anchor, billboard);
+    return bent_quad(billboard, billboard_bend_by(wind, anchor, billboard));
+}
+
+// The quad whose top the wind bends by `bend` along x and z.
+fn bent_quad(billboard: Billboard, bend: vec2f) -> WindQuad {
     let lean = billboard.up + vec3f(bend.x, 0.0, bend.y) * WIND_SHARE;
     return WindQuad(
         billboard.root,

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use crate::bodies::Bodies;
+use crate::gpu::billboards::GpuBillboards;
 use crate::gpu::{Gpu, GpuError, GrassKernels, PassTimer, TickError};
 use crate::render::{
-    ActiveBillboards, ActiveNodes, BillboardCounts, BladeCounts, BladeDetail, BladesInput,
-    Exposure, FrameInput, GroundLook, RenderError, Renderer, Sun, View, active_slabs, bodies_at,
-    scene_view, tile_marks,
+    ActiveBillboards, ActiveNodes, BillboardCounts, BillboardNodes, BladeCounts, BladeDetail,
+    BladesInput, Exposure, FrameInput, GroundLook, RenderError, Renderer, Sun, View, active_slabs,
+    bodies_at, scene_view, tile_marks,
 };
 use crate::scene::assets::Assets;
 use crate::scene::{Action, Camera, Likes, LoadedScene};
@@ -274,6 +275,15 @@ impl Stage {
             Engine::Cpu(_) | Engine::Reference(_) => (&self.nodes.tiles, &self.nodes.nodes),
             Engine::Gpu(engine) => (&slabs, engine.grass.drawn()),
         };
+        let on_device = match &self.engine {
+            Engine::Gpu(engine) => engine.grass.billboards.as_ref(),
+            Engine::Cpu(_) | Engine::Reference(_) => None,
+        };
+        let on_device = on_device.map(|billboards| billboards.drawn(meadow));
+        let billboards = match &on_device {
+            Some((tiles, nodes)) => BillboardNodes { tiles, nodes },
+            None => self.billboards.drawn(),
+        };
         let marks = if overlay {
             tile_marks(meadow, self.resting_boxes.then_some(view.eye_in_world))
         } else {
@@ -290,7 +300,7 @@ impl Stage {
                 wind: &meadow.work.wind,
                 active,
                 active_nodes,
-                billboards: Some(self.billboards.drawn()),
+                billboards: Some(billboards),
                 detail: self.detail,
             }),
             marks: &marks,
@@ -302,6 +312,21 @@ impl Stage {
     /// What the last picture drew of the billboards; `None` in a scene without them.
     pub fn billboard_counts(&self) -> Option<BillboardCounts> {
         self.renderer.billboard_counts()
+    }
+
+    /// Bytes on the device of the billboards' records, state and geometry, without their pictures; `None`
+    /// in a scene without them.
+    pub fn billboard_bytes(&self) -> Option<u64> {
+        let drawn = self.renderer.billboard_counts()?;
+        let simulated = match &self.engine {
+            // Its nodes are those that are drawn.
+            Engine::Gpu(engine) => {
+                let bytes = engine.grass.billboards.as_ref().map(GpuBillboards::bytes);
+                bytes.unwrap_or_default().iter().sum()
+            }
+            Engine::Cpu(_) | Engine::Reference(_) => drawn.nodes_bytes,
+        };
+        Some(drawn.state_bytes + simulated)
     }
 
     /// What the last picture drew of the plants.
@@ -339,7 +364,7 @@ fn lay_out(
     let mut meadow = Meadow::new(loaded.scene.clone(), &loaded.assets)?;
     let engine = if choice == EngineChoice::Reference {
         Engine::reference(&mut meadow)
-    } else if choice.is_gpu_on(gpu) && !choice.falls_back(&meadow.scene) {
+    } else if choice.is_gpu_on(gpu) {
         Engine::gpu(gpu, kernels, &mut meadow)?
     } else {
         Engine::cpu()

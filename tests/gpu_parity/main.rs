@@ -1,6 +1,7 @@
 //! Each pass on the device against its twin in Rust, from the same input. Trials need a graphics
 //! adapter: without one they are ignored, and with `SWARD_REQUIRE_GPU=1` the missing adapter fails.
 
+mod billboard_runs;
 mod billboards;
 mod coats;
 mod compare;
@@ -35,6 +36,14 @@ const CHECKS: &[(&str, Check)] = &[
         plants::kinds_by_colour_are_equal,
     ),
     ("billboards_are_equal", billboards::billboards_are_equal),
+    (
+        "billboards_respond_alike",
+        billboard_runs::billboards_respond_alike,
+    ),
+    (
+        "a_car_falls_and_drives_off_alike",
+        billboard_runs::a_car_falls_and_drives_off_alike,
+    ),
     (
         "sixty_thousand_billboards_are_equal",
         billboards::sixty_thousand_billboards_are_equal,

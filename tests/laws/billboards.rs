@@ -182,7 +182,11 @@ fn pressed_until(loaded: &LoadedScene, engine: Which, time_s: f64) -> (Boards, V
         engine.tick(&mut meadow).expect("a tick");
         let tiles = meadow.work.tiles.iter();
         standing = tiles
-            .flat_map(|tile| engine.standing_billboards(&meadow, tile))
+            .flat_map(|tile| {
+                engine
+                    .standing_billboards(&meadow, tile)
+                    .expect("on the processor")
+            })
             .collect();
         let weave = meadow.weave.as_ref().expect("billboards");
         let pressed = standing.iter().filter(|b| b.touched_at == meadow.work.now);

@@ -174,7 +174,10 @@ fn measures(ui: &mut egui::Ui, facts: &Facts<'_>) {
                 row("  refined", format!("{}", drawn.refined));
                 let tiles = format!("{}, {} behind hills", drawn.tiles, drawn.hidden_tiles);
                 row("  tiles", tiles);
-                row("  on device", bytes(drawn.state_bytes + drawn.nodes_bytes));
+                row(
+                    "  on device",
+                    bytes(play.stage.billboard_bytes().unwrap_or(0)),
+                );
             }
             row("grass state", bytes(meadow.state_bytes()));
             let bodies = meadow.bodies.info();

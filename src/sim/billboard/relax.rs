@@ -10,7 +10,7 @@
 //!
 //! A body that comes edge-on meets a surface that cannot be shortened and has no reason to yield to
 //! either side: it would crumple, strained by 80% and more. So a node that is pushed goes aside as well,
-//! to the side of the quad that it is pushed to anyway, by [`ASIDE`] of the way.
+//! to the side of the quad that it is pushed to anyway, by [`PUSH_ASIDE`] of the way.
 //!
 //! Deviations from O09: lengths of columns are exact; the sub-step has sweeps, twice as many as blades
 //! take, since a surface bends less readily than a line, and more rounds in them; an energy guard (see [`springs`]).
@@ -24,7 +24,7 @@ use crate::sim::springs::{BILLBOARD_PASSES, step};
 
 use super::batch::Batch;
 use super::grid::Side;
-use super::springs::{self, Measured, Pull};
+use super::springs::{self, Measured, POINT_M2, Pull};
 
 /// Rate κ of structural and shear springs, in 1/s: in a sub-step of 1/120 s they lose 94% of their
 /// extension one by one.
@@ -42,9 +42,7 @@ pub const STRAIN: f64 = 0.5;
 /// Sweeps of a billboard for each one that a blade takes.
 pub const FINENESS: u32 = 2;
 /// How far a pushed node goes aside, over the way that it is pushed.
-pub const ASIDE: f64 = 0.3;
-/// Ends of a column's segment are at one place where the square of its length is less, in square metres.
-const POINT_M2: f64 = 1e-24;
+pub const PUSH_ASIDE: f64 = 0.3;
 
 /// What the kernel needs besides the billboards.
 #[derive(Clone, Copy, Debug)]
@@ -154,7 +152,7 @@ fn push_out<R: Real, const L: usize>(batch: &mut Batch<R, L>, l: usize) -> bool 
             };
             let mut to = pushed.to;
             if let Some(normal) = pushed.normal {
-                let aside = facing * (pushed.depth * R::of(ASIDE));
+                let aside = facing * (pushed.depth * R::of(PUSH_ASIDE));
                 to = if facing.dot(normal) < R::ZERO {
                     to - aside
                 } else {
