@@ -11,7 +11,7 @@ use super::grass_buffers::{
     COLLIDE_GROUPS, CUT_SHORT_BYTE, RECOVER_GROUPS, TOUCHED_HEADER, slab_limit,
 };
 use super::late_count::LateCount;
-use super::passes::billboards::{Around, BillboardPasses};
+use super::passes::billboard::{Around, BillboardPasses};
 use super::passes::{Recording, WORKGROUP};
 use super::turns::BillboardTurns;
 use super::{Buffer, Gpu, GpuError};
@@ -225,12 +225,12 @@ impl GpuBillboards {
 
     pub(super) fn collide(&self, gpu: &Gpu, into: &mut Recording<'_>, around: Around<'_>) {
         let (boards, turns) = (&self.buffers, self.turns);
-        self.passes.collide(gpu, into, boards, around, turns);
+        (self.passes.collide).record(gpu, into, boards, around, turns.collide);
     }
 
     pub(super) fn relax(&self, gpu: &Gpu, into: &mut Recording<'_>, around: Around<'_>) {
         let (boards, turns) = (&self.buffers, self.turns);
-        self.passes.relax(gpu, into, boards, around, turns);
+        (self.passes.relax).record(gpu, into, boards, around, turns.relax);
     }
 
     /// Notes whether the driver cut loops short, to be known a frame or two later.
@@ -249,7 +249,7 @@ impl GpuBillboards {
         let slabs = self.buffers.pool.len() / self.slab_rows();
         let rows = slabs * self.drawn_rows();
         self.buffers.drawn.grow_to(gpu, rows)?;
-        self.passes.recover(gpu, into, &self.buffers, grass);
+        (self.passes.recover).record(gpu, into, &self.buffers, grass);
         Ok(())
     }
 

@@ -12,7 +12,7 @@ use super::grass_buffers::{
     COLLIDE_GROUPS, CUT_SHORT_BYTE, GrassBuffers, RECOVER_GROUPS, TOUCHED_HEADER, slab_limit,
 };
 use super::late_count::LateCount;
-use super::passes::billboards::Around;
+use super::passes::billboard::Around;
 use super::passes::collide::CollidePass;
 use super::passes::depth_cube::DepthCubePass;
 use super::passes::recover::RecoverPass;

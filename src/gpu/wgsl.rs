@@ -199,7 +199,7 @@ pub const SHARED: &[WgslFile] = &[
 /// One file per compute pass.
 pub const PASSES: &[WgslFile] = &[
     wgsl_file!(
-        "billboard_collide.wgsl",
+        "billboard/collide.wgsl",
         BOARD_FINENESS,
         ON_SURFACE_M,
         PINNED_M,
@@ -221,9 +221,9 @@ pub const PASSES: &[WgslFile] = &[
         UNIT_STEPS,
         WORKGROUP,
     ),
-    wgsl_file!("billboard_recover.wgsl", WORKGROUP),
+    wgsl_file!("billboard/recover.wgsl", WORKGROUP),
     wgsl_file!(
-        "billboard_relax.wgsl",
+        "billboard/relax.wgsl",
         BOARD_POINT_M2,
         CRUMPLED_SHARE,
         FACE_MASK,

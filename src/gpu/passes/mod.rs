@@ -3,7 +3,7 @@
 //! Bind group 0 is the field ([`FieldBuffers`](super::FieldBuffers)); bind group 1 holds what one
 //! pass works on. Kernels live as long as the process needs them.
 
-pub mod billboards;
+pub mod billboard;
 pub mod collide;
 pub mod depth_cube;
 pub mod recover;

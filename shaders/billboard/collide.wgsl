@@ -1,5 +1,4 @@
-// Collide: which billboards a body touches in this sub-step. Twins: src/sim/billboard/tile.rs (touched),
-// src/sim/collide.rs.
+// Collide: which billboards a body touches in this sub-step. Twin: src/sim/billboard/collide.rs.
 //
 // One invocation per billboard of a colliding tile (workgroup y is the tile), as for blades. One that an
 // earlier turn has listed has the tick in w of its state's first row.
