@@ -6,7 +6,7 @@
 // Pushing out and laying out ask the bodies at one place only, in `meet_bodies`: software drivers
 // pay for every inlined copy of that.
 #import "shared/contact.wgsl"
-#import "shared/ground.wgsl"
+#import "shared/laid.wgsl"
 #import "shared/plant.wgsl"
 #import "shared/recovering.wgsl"
 #import "shared/state.wgsl"
@@ -30,94 +30,9 @@ fn rest_direction(j: u32) -> vec3f {
     return unit_or(wind_nodes[j + 1u] - wind_nodes[j], UP);
 }
 
-fn plane_below(tile: TileRecord, node: vec3f) -> GroundPlane {
-    return ground_plane_in_anchor(tile, node.x, node.z);
-}
-
-fn ground_below(tile: TileRecord, node: vec3f) -> f32 {
-    return ground_in_anchor(tile, node.x, node.z);
-}
-
-// True for a node that a body presses onto the ground: its way out leads below it, and into it
-// rather than along.
-fn is_pressed(tile: TileRecord, out: vec3f, normal: vec3f) -> bool {
-    let plane = plane_below(tile, out);
-    let into = dot(plane.slope, normal.xz) - normal.y;
-    return into > STICKS * sqrt(1.0 + dot(plane.slope, plane.slope)) && out.y < plane.height;
-}
-
-fn is_on_ground(tile: TileRecord, node: vec3f) -> bool {
-    return node.y - ground_below(tile, node) <= ON_GROUND_M;
-}
-
-// Turns segment j about its lower node until its upper one is on the ground, if it is below.
-fn lay_on_ground(tile: TileRecord, length: f32, j: u32) {
-    let plane = plane_below(tile, nodes[j + 1u]);
-    if nodes[j + 1u].y < plane.height {
-        turn_to(length, j, plane);
-    }
-}
-
-// Turns segment j about its lower node, up or down, until its upper one is on the plane of the
-// ground below it, as far as its length allows.
-fn turn_to(length: f32, j: u32, plane: GroundPlane) {
-    let rest = rest_direction(j);
-    let sideways = unit_or(vec3f(rest.x, 0.0, rest.z), vec3f(1.0, 0.0, 0.0));
-    let segment = nodes[j + 1u] - nodes[j];
-    let aside = vec3f(segment.x, 0.0, segment.z);
-    let flat = unit_or(aside, sideways);
-    // Along `flat` the plane is `start + slope·run` above the lower node, and the upper one is where
-    // run² + rise² is the square of the length.
-    let slope = dot(plane.slope, flat.xz);
-    let square = 1.0 + slope * slope;
-    let reach = length * sqrt(square);
-    let start = clamp(plane.height - slope * dot(aside, flat) - nodes[j].y, -reach, reach);
-    let left = sqrt(max(reach * reach - start * start, 0.0));
-    let run = (left - start * slope) / square;
-    nodes[j + 1u] = nodes[j] + flat * run + UP * (start + slope * run);
-}
-
-// Turns segment j about its lower node until its upper one is out of a part, where its length
-// allows that, or of the way between the part and the ground. Returns whether it did.
-fn turn_out(tile: TileRecord, length: f32, j: u32, n: vec3f, depth: f32) -> bool {
-    let segment = nodes[j + 1u] - nodes[j];
-    let along = dot(segment, n);
-    let rise = along + depth;
-    let run = length * length - rise * rise;
-    if run <= 0.0 {
-        let under = is_on_ground(tile, nodes[j]) && !is_on_ground(tile, nodes[j + 1u]);
-        if under {
-            turn_to(length, j, plane_below(tile, nodes[j + 1u]));
-        }
-        return under;
-    }
-    let rest = rest_direction(j);
-    let sideways = unit_or(rest - n * dot(rest, n), across(n));
-    let flat = unit_or(segment - n * along, sideways);
-    let out = nodes[j] + n * rise + flat * sqrt(run);
-    if !is_pressed(tile, out, n) {
-        nodes[j + 1u] = out;
-    } else if is_on_ground(tile, nodes[j + 1u]) {
-        return false;
-    } else {
-        turn_to(length, j, plane_below(tile, nodes[j + 1u]));
-    }
-    return true;
-}
-
-// Pushes a node out of a part, or straight down where the part presses it onto the ground. Returns
-// whether it moved.
-fn push_out(tile: TileRecord, j: u32, n: vec3f, depth: f32) -> bool {
-    let node = nodes[j + 1u];
-    let out = node + n * depth;
-    if !is_pressed(tile, out, n) {
-        nodes[j + 1u] = out;
-    } else if is_on_ground(tile, node) {
-        return false;
-    } else {
-        nodes[j + 1u].y = ground_below(tile, node);
-    }
-    return true;
+// Segment j, about its lower node.
+fn segment(j: u32, length: f32) -> Laid {
+    return Laid(nodes[j], length, rest_direction(j));
 }
 
 // Asks one part about segment j's upper node, and pushes or (`laying`) turns it out. Returns whether
@@ -138,10 +53,14 @@ fn meet_part(
     }
     faces[j] = contacts[contact].key | ((exit.face + 1u) & FACE_MASK);
     let n = rotate(pose.turn, exit.normal);
+    var put: Put;
     if laying {
-        return turn_out(tile, length, j, n, exit.depth);
+        put = turned_out(tile, segment(j, length), nodes[j + 1u], n, exit.depth);
+    } else {
+        put = pushed_out(tile, nodes[j + 1u], n, exit.depth, vec3f(0.0));
     }
-    return push_out(tile, j, n, exit.depth);
+    nodes[j + 1u] = put.node;
+    return put.moved;
 }
 
 // Pushes every node out of every part that reaches the plant, part after part; or, `laying`, lays
@@ -167,7 +86,7 @@ fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, layi
             before = nodes[j + 1u];
             let direction = unit_or(nodes[j + 1u] - nodes[j], rest_direction(j));
             nodes[j + 1u] = nodes[j] + direction * length;
-            lay_on_ground(tile, length, j);
+            nodes[j + 1u] = lay_on_ground(tile, segment(j, length), nodes[j + 1u]);
         }
         let contact = tile.first_contact + part;
         asked_since++;
@@ -183,7 +102,7 @@ fn meet_bodies(tile: TileRecord, plant_reach: f32, length: f32, share: f32, layi
             asked_since = 0u;
         }
         if laying && look + 1u == looks {
-            lay_on_ground(tile, length, j);
+            nodes[j + 1u] = lay_on_ground(tile, segment(j, length), nodes[j + 1u]);
         }
     }
     return pushed;

@@ -130,6 +130,7 @@ fn numbers_out_of_range() {
         "(billboards: (density_per_m2: -1))" => "1:31" "billboards.density_per_m2": "is -1", "0 to 1000 billboards/m2";
         "(billboards: (nodes: (2, 4)))" => "1:23" "billboards.nodes[0]": "is 2", "3 to 9 nodes";
         "(billboards: (nodes: (4, 10)))" => "1:26" "billboards.nodes[1]": "is 10";
+        "(billboards: (draw_subdivision: 9))" => "1:33" "billboards.draw_subdivision": "is 9", "0 to 8";
         "(billboards: (clumps: []))" => "1:23" "billboards.clumps": "no share above 0";
         "(billboards: (clumps: [(share: 0)]))" => "1:23" "billboards.clumps": "no share above 0";
         "(billboards: (clumps: [(), (), (), (), (), (), (), (), ()]))" => "1:23" "billboards.clumps": "9 kinds of clumps", "at most 8";

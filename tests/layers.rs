@@ -42,6 +42,12 @@ fn stem(path: &Path) -> String {
         .into_owned()
 }
 
+/// The path of a file within a folder, without its ending.
+fn name_in(path: &Path, folder: &Path) -> String {
+    let within = path.strip_prefix(folder).expect("a file of the folder");
+    within.with_extension("").to_string_lossy().into_owned()
+}
+
 /// Names of the layers that a source text uses: what follows `crate::` directly, or stands in
 /// braces after it.
 fn layers_used(text: &str) -> Vec<(usize, String)> {
@@ -99,22 +105,21 @@ fn every_pass_has_its_three_files() {
     let root = root();
     let mut failures = Vec::new();
     for host in files(&root.join("src/gpu/passes"), "rs") {
-        let stem = stem(&host);
-        if stem == "mod" {
+        let pass = name_in(&host, &root.join("src/gpu/passes"));
+        if stem(&host) == "mod" {
             continue;
         }
-        for twin in [format!("shaders/{stem}.wgsl"), format!("src/sim/{stem}.rs")] {
+        for twin in [format!("shaders/{pass}.wgsl"), format!("src/sim/{pass}.rs")] {
             if !root.join(&twin).is_file() {
                 failures.push(format!("{} has no {twin}", host.display()));
             }
         }
     }
-    for shader in fs::read_dir(root.join("shaders")).expect("the shader folder") {
-        let path = shader.expect("a readable entry").path();
-        if path.is_dir() {
+    for path in files(&root.join("shaders"), "wgsl") {
+        let stem = name_in(&path, &root.join("shaders"));
+        if stem.starts_with("shared/") {
             continue;
         }
-        let stem = stem(&path);
         let hosts = [
             format!("src/gpu/passes/{stem}.rs"),
             format!("src/render/{stem}.rs"),

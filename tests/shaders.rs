@@ -59,7 +59,7 @@ fn every_shader_is_valid() {
 fn every_shader_file_is_embedded() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
     let mut on_disk = BTreeSet::new();
-    for folder in [root.clone(), root.join("shared")] {
+    for folder in [root.clone(), root.join("billboard"), root.join("shared")] {
         for entry in fs::read_dir(&folder).expect("the shader folder") {
             let path = entry.expect("an entry").path();
             if path.is_file() {

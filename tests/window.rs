@@ -137,6 +137,17 @@ fn keys_change_the_picture() -> Result<(), Failed> {
         window.shot()?.differing(&paused) == 0,
         "T takes the boxes away",
     )?;
+    window.keys(&["8"])?;
+    let awake = red(&window.shot()?);
+    ensure(
+        awake > before + 100,
+        format!("8: {before} red texels, then {awake}"),
+    )?;
+    window.keys(&["8"])?;
+    ensure(
+        window.shot()?.differing(&paused) == 0,
+        "8 takes the boxes away",
+    )?;
 
     let pointer = [440, 290];
     window.point(pointer)?;

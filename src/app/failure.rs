@@ -94,8 +94,7 @@ fn exit_of_gpu(error: &GpuError) -> Exit {
         GpuError::NoAdapter { .. }
         | GpuError::NoDevice { .. }
         | GpuError::TooLarge { .. }
-        | GpuError::UnknownMethod { .. }
-        | GpuError::Billboards { .. } => Exit::NoAdapter,
+        | GpuError::UnknownMethod { .. } => Exit::NoAdapter,
         _ => Exit::Internal,
     }
 }

@@ -30,11 +30,6 @@ pub enum GpuError {
     UnknownMethod { asked: String },
 
     #[error(
-        "the gpu engine has no kernels for billboards yet, and the scene has {count}: take --engine cpu"
-    )]
-    Billboards { count: usize },
-
-    #[error(
         "the driver of adapter '{adapter}' has ended loops of {count} kernels early, so that their \
          plants are wrong: lower solver.max_sweeps, or take --engine cpu"
     )]

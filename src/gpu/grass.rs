@@ -5,12 +5,14 @@
 //! tick calls have the names of those of [`sim::cpu::Grass`](crate::sim::cpu::Grass); they record,
 //! and [`GpuGrass::submit`] hands the tick to the device. Nothing is read back unless asked for.
 
+use super::billboards::GpuBillboards;
 use super::cubes::Cubes;
 use super::field_data::TileRecord;
 use super::grass_buffers::{
     COLLIDE_GROUPS, CUT_SHORT_BYTE, GrassBuffers, RECOVER_GROUPS, TOUCHED_HEADER, slab_limit,
 };
 use super::late_count::LateCount;
+use super::passes::billboard::Around;
 use super::passes::collide::CollidePass;
 use super::passes::depth_cube::DepthCubePass;
 use super::passes::recover::RecoverPass;
@@ -123,9 +125,11 @@ pub struct GpuGrass {
     pub field: FieldBuffers,
     pub(super) buffers: GrassBuffers,
     pub cubes: Cubes,
+    /// `None` in a scene without billboards.
+    pub billboards: Option<GpuBillboards>,
     /// Nodes as drawn, laid out like the state.
     drawn: Buffer<[f32; 4]>,
-    encoder: wgpu::CommandEncoder,
+    pub(super) encoder: wgpu::CommandEncoder,
     /// Rows of a slab.
     pub(super) slab_rows: usize,
     /// Tiles of the current tick, and how many of them collide.
@@ -143,26 +147,25 @@ impl GpuGrass {
     /// tiles beyond it are refused and counted by the meadow.
     ///
     /// # Errors
-    /// A ground or blade table larger than the device can bind; billboards, which no kernel moves.
+    /// A ground, a blade table or billboards larger than the device can bind.
     pub fn new(gpu: &Gpu, kernels: &GrassKernels, meadow: &mut Meadow) -> Result<Self, GpuError> {
-        if let Some(billboards) = &meadow.field.billboards {
-            let count = billboards.all.len();
-            return Err(GpuError::Billboards { count });
-        }
-        let solver = &meadow.scene.solver;
-        let unknown = unknown_settings(&solver.method);
+        let unknown = unknown_settings(&meadow.scene.solver.method);
         if !unknown.is_empty() {
             let asked = unknown.join(", ");
             return Err(GpuError::UnknownMethod { asked });
         }
+        let billboards = GpuBillboards::new(gpu, meadow)?;
+        let solver = &meadow.scene.solver;
         let bytes = slab_bytes(meadow.field.grid.plants_per_tile(), solver.segments);
+        let (cube_resolution, skin_m) = (solver.cube_resolution, f64::from(solver.skin_m));
         meadow.tiles.slabs.lower_limit(slab_limit(gpu, bytes));
         let grass = Self {
             gpu: gpu.clone(),
             kernels: kernels.clone(),
             field: FieldBuffers::new(gpu, &kernels.field, &meadow.field)?,
             buffers: GrassBuffers::new(gpu)?,
-            cubes: Cubes::new(gpu, solver.cube_resolution, f64::from(solver.skin_m))?,
+            cubes: Cubes::new(gpu, cube_resolution, skin_m)?,
+            billboards,
             drawn: Buffer::new(gpu, "drawn nodes", 0, wgpu::BufferUsages::STORAGE)?,
             encoder: new_encoder(gpu),
             slab_rows: bytes as usize / size_of::<[u32; 4]>(),
@@ -189,6 +192,9 @@ impl GpuGrass {
             let state = &self.buffers.state.raw;
             self.encoder.clear_buffer(state, first, Some(slab));
         }
+        if let Some(billboards) = &self.billboards {
+            billboards.assign_slabs(&mut self.encoder, meadow);
+        }
         Ok(())
     }
 
@@ -210,7 +216,7 @@ impl GpuGrass {
         Ok(())
     }
 
-    /// Lists the plants that a body touches. Nothing is dispatched where no tile collides.
+    /// Lists the plants and billboards that a body touches. Nothing is dispatched where no tile collides.
     ///
     /// # Errors
     /// More contacts than the device can bind.
@@ -238,11 +244,19 @@ impl GpuGrass {
             &self.kernels.turns,
             self.turns.collide,
         );
+        if let Some(billboards) = &self.billboards {
+            let around = Around {
+                grass: &self.buffers,
+                cubes: &self.cubes.buffers,
+                turns: &self.kernels.turns,
+            };
+            billboards.collide(&self.gpu, &mut recording, around);
+        }
         self.dispatches.collide += u64::from(self.turns.collide.count);
         Ok(())
     }
 
-    /// Pushes the touched plants out, restores their shape and stores their offsets.
+    /// Pushes what is touched out, restores its shape and stores its offsets.
     pub fn relax(&mut self) {
         if self.colliding == 0 {
             return;
@@ -260,6 +274,14 @@ impl GpuGrass {
             &self.kernels.turns,
             self.turns.relax,
         );
+        if let Some(billboards) = &self.billboards {
+            let around = Around {
+                grass: &self.buffers,
+                cubes: &self.cubes.buffers,
+                turns: &self.kernels.turns,
+            };
+            billboards.relax(&self.gpu, &mut recording, around);
+        }
         self.dispatches.relax += u64::from(self.turns.relax.count);
     }
 
@@ -269,9 +291,15 @@ impl GpuGrass {
         self.timer.finish_frame(&mut encoder);
         let (touched, byte) = (&self.buffers.touched.raw, CUT_SHORT_BYTE);
         self.cut_short.record(&mut encoder, touched, byte);
+        if let Some(billboards) = &mut self.billboards {
+            billboards.record_cut_short(&mut encoder);
+        }
         self.gpu.queue.submit([encoder.finish()]);
         self.timer.collect(&self.gpu);
         self.cut_short.collect(&self.gpu);
+        if let Some(billboards) = &mut self.billboards {
+            billboards.cut_short.collect(&self.gpu);
+        }
     }
 
     /// Whether the driver has ended loops of kernels early, as far as is known without waiting: for a
@@ -280,7 +308,8 @@ impl GpuGrass {
     /// # Errors
     /// `CutShort`, from a frame or two later on.
     pub fn check_late(&self) -> Result<(), GpuError> {
-        self.check_cut_short(self.cut_short.value())
+        let of_boards = self.billboards.as_ref().map_or(0, |b| b.cut_short.value());
+        self.check_cut_short(self.cut_short.value() + of_boards)
     }
 
     /// Writes the nodes of active tiles' plants as they stand after the last tick; once per
@@ -301,6 +330,9 @@ impl GpuGrass {
         self.kernels
             .recover
             .record(&self.gpu, &mut recording, &self.buffers, &self.drawn);
+        if let Some(billboards) = &mut self.billboards {
+            billboards.recover(&self.gpu, &mut recording, &self.buffers)?;
+        }
         self.dispatches.recover += 1;
         self.submit();
         Ok(())
@@ -348,7 +380,13 @@ impl GpuGrass {
         buffers
             .groups
             .write(gpu, COLLIDE_GROUPS as usize, &collide)?;
-        buffers.groups.write(gpu, RECOVER_GROUPS as usize, &recover)
+        buffers
+            .groups
+            .write(gpu, RECOVER_GROUPS as usize, &recover)?;
+        match &mut self.billboards {
+            Some(billboards) => billboards.take_in(gpu, meadow, [self.colliding, self.active]),
+            None => Ok(()),
+        }
     }
 }
 

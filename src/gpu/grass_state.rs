@@ -16,18 +16,23 @@ use crate::sim::slab::Slab;
 #[derive(Clone, Debug, Default)]
 pub struct GpuState {
     slabs: Vec<Option<Slab<f32>>>,
+    billboards: Vec<Option<Slab<f32>>>,
 }
 
 impl GrassState<f32> for GpuState {
     fn slab(&self, slab: u32) -> Option<&Slab<f32>> {
         self.slabs.get(slab as usize)?.as_ref()
     }
+
+    fn billboards(&self, slab: u32) -> Option<&Slab<f32>> {
+        self.billboards.get(slab as usize)?.as_ref()
+    }
 }
 
 /// What the passes counted.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Counts {
-    /// Plants that were touched in the last tick in which a tile collided.
+    /// Plants and billboards that were touched in the last tick in which a tile collided.
     pub touched: u32,
     /// Most rounds any plant took since the start.
     pub rounds_peak: u32,
@@ -54,24 +59,32 @@ impl GpuGrass {
     /// The device's; kernels that the driver did not let finish.
     pub fn read_state(&self, meadow: &Meadow) -> Result<GpuState, GpuError> {
         let slabs: Vec<u32> = meadow.work.tiles.iter().map(|tile| tile.slab).collect();
-        let state = self.buffers.state.parts(&runs(self, &slabs))?;
+        let runs = runs(self, &slabs);
         let header = 0..TOUCHED_HEADER as usize;
-        let header = self.buffers.touched.parts(std::slice::from_ref(&header))?;
-        // One wait for both.
-        let bytes = read_together(&self.gpu, "grass state", &[header, state].concat())?;
+        let mut parts = self.buffers.touched.parts(std::slice::from_ref(&header))?;
+        parts.extend(self.buffers.state.parts(&runs)?);
+        if let Some(billboards) = &self.billboards {
+            parts.extend(billboards.parts(&slabs)?);
+        }
+        // One wait for all.
+        let bytes = read_together(&self.gpu, "grass state", &parts)?;
         let (header, rows) = bytes.split_at(TOUCHED_HEADER as usize * size_of::<u32>());
         let header: Vec<u32> = bytemuck::pod_collect_to_vec(header);
         self.check_cut_short(Counts::new(&header).cut_short)?;
         let rows: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(rows);
+        let (rows, of_boards) = rows.split_at(runs.iter().map(Range::len).sum());
         let plants = meadow.field.grid.plants_per_tile() as usize;
         let segments = meadow.scene.solver.segments as usize;
         let mut state = GpuState::default();
-        for (&slab, rows) in slabs.iter().zip(rows.chunks_exact(self.slab_rows.max(1))) {
-            let place = slab as usize;
-            if state.slabs.len() <= place {
-                state.slabs.resize(place + 1, None);
-            }
-            state.slabs[place] = Some(unpack(rows, plants, segments));
+        let high = slabs.iter().map(|&slab| slab as usize + 1).max();
+        state.slabs.resize(high.unwrap_or(0), None);
+        // Slabs of a meadow of billboards alone have no rows.
+        for (&slab, first) in slabs.iter().zip((0..).step_by(self.slab_rows.max(1))) {
+            let rows = &rows[first.min(rows.len())..][..self.slab_rows];
+            state.slabs[slab as usize] = Some(unpack(rows, plants, segments));
+        }
+        if let Some(billboards) = &self.billboards {
+            state.billboards = billboards.unpack(meadow, of_boards);
         }
         Ok(state)
     }
@@ -94,7 +107,14 @@ impl GpuGrass {
             .buffers
             .touched
             .read(&self.gpu, TOUCHED_HEADER as usize)?;
-        Ok(Counts::new(&header))
+        let mut counts = Counts::new(&header);
+        if let Some(billboards) = &self.billboards {
+            let of_boards = Counts::new(&billboards.read_header(&self.gpu)?);
+            counts.touched += of_boards.touched;
+            counts.rounds_peak = counts.rounds_peak.max(of_boards.rounds_peak);
+            counts.cut_short += of_boards.cut_short;
+        }
+        Ok(counts)
     }
 
     /// Whether the driver has ended loops of kernels early. Waits for the device.
@@ -133,6 +153,11 @@ impl GpuGrass {
                 self.buffers
                     .state
                     .write(&self.gpu, first, &pack(slab, segments))?;
+            }
+            let of_boards = self.billboards.as_ref().zip(state.billboards(tile.slab));
+            if let Some((billboards, slab)) = of_boards {
+                let place = (tile.tile, tile.slab);
+                billboards.upload(&self.gpu, &mut self.encoder, meadow, place, slab)?;
             }
         }
         Ok(())

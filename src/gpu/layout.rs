@@ -28,6 +28,7 @@ pub trait GpuStruct: Pod {
 /// Layouts of the structs that the shaders of this layer read.
 pub fn layouts() -> Vec<StructLayout> {
     use super::billboard_place::{BillboardRecord, BillboardUniform, ClumpUniform};
+    use super::billboards::BoardUniform;
     use super::field_data::{
         FieldUniform, SpeciesUniform, TasteUniform, TileRecord, WaveUniform, WindUniform,
     };
@@ -35,6 +36,7 @@ pub fn layouts() -> Vec<StructLayout> {
     vec![
         BillboardRecord::layout(),
         BillboardUniform::layout(),
+        BoardUniform::layout(),
         ClumpUniform::layout(),
         ContactRecord::layout(),
         CubeJob::layout(),

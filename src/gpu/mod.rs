@@ -5,8 +5,10 @@
 //! stays inside WebGPU's default limits and features, except for larger storage bindings where
 //! the adapter has them and for timestamps, which are optional.
 
+mod assemble;
 mod base_texels;
 pub mod billboard_place;
+pub mod billboards;
 mod buffer;
 pub mod cubes;
 mod device;

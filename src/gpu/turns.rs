@@ -7,10 +7,11 @@
 //! the most rounds. Kernels that find their loops cut short all the same say so:
 //! [`Counts::cut_short`](super::Counts::cut_short), which is read with the state, and late by a window. Shader: `shaders/turns.wgsl`.
 
-use super::grass_buffers::GrassBuffers;
 use super::passes::{Access, Groups, Kernel, Recording};
-use super::{Gpu, GpuError};
+use super::{Buffer, Gpu, GpuError};
 use crate::sim::Meadow;
+use crate::sim::billboard::Weave;
+use crate::sim::billboard::relax::{FINENESS, Settings};
 use crate::sim::fault::Fault;
 use crate::sim::parts::Tested;
 use crate::sim::relax::{LOOKS, SPRING_TRIES};
@@ -48,6 +49,17 @@ pub struct PassTurns {
     pub relax: Turns,
 }
 
+/// Turns of the billboards' passes of a sub-step; those of relax are of rounds instead of sweeps, since a
+/// sweep of a fine grid by itself may be too long.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct BillboardTurns {
+    pub collide: Turns,
+    pub relax: Turns,
+}
+
+/// Neighbours of a node of a billboard that a pass over its springs asks about.
+const EARLIER_LOOPS: u64 = 7;
+
 impl PassTurns {
     /// Those of the meadow's current sub-step.
     pub fn new(meadow: &Meadow) -> Self {
@@ -72,6 +84,28 @@ impl PassTurns {
         Self {
             collide: Turns::new(sweeps, segments * per_test),
             relax: Turns::new(sweeps, rounds * segments * (per_exit + LOOPS_OVER_SEGMENTS)),
+        }
+    }
+}
+
+impl BillboardTurns {
+    /// Those of the meadow's current sub-step.
+    pub fn new(meadow: &Meadow, weave: &Weave, settings: &Settings<f32>) -> Self {
+        let sweeps = most_sweeps(meadow).saturating_mul(FINENESS);
+        let per_test = loops_per_node(meadow, |contacts| {
+            let tests = contacts.iter();
+            tests.map(|contact| test_loops(meadow, contact)).sum()
+        });
+        let per_exit = loops_per_node(meadow, |contacts| exit_loops(meadow, contacts));
+        let nodes = weave.grid.nodes() as u64;
+        let passes = u64::from(settings.passes);
+        // Measured three times, pulled, and pulled otherwise where that raised the energy.
+        let springs = (passes + 3) * (EARLIER_LOOPS + 1) + passes * (2 * EARLIER_LOOPS + 1);
+        // Of every sweep the push, and then its rounds.
+        let rounds = sweeps.saturating_mul(settings.most_rounds + 1);
+        Self {
+            collide: Turns::new(sweeps, nodes * (per_test + 1)),
+            relax: Turns::new(rounds, nodes * (per_exit + springs)),
         }
     }
 }
@@ -154,16 +188,16 @@ impl TurnsPass {
         &self,
         gpu: &Gpu,
         into: &mut Recording<'_>,
-        grass: &GrassBuffers,
+        touched: &Buffer<u32>,
         turns: Turns,
         mut pass: impl FnMut(&mut Recording<'_>),
     ) {
-        into.encoder.clear_buffer(&grass.touched.raw, 8, Some(4));
+        into.encoder.clear_buffer(&touched.raw, 8, Some(4));
         pass(into);
         if turns.count == 1 {
             return;
         }
-        let bound = self.next_turn.bind(gpu, &[(4, &grass.touched.raw)]);
+        let bound = self.next_turn.bind(gpu, &[(4, &touched.raw)]);
         for _ in 1..turns.count {
             self.next_turn
                 .record(into, &bound, Groups::Direct([1, 1, 1]));

@@ -71,6 +71,8 @@ pub struct BladeDetail {
     /// The place from which distances decide what is drawn, where that is not the view's eye: what the
     /// camera's way changes can then be told from its motion. Counts by area stay the view's.
     pub judged_from: Option<Vec3<f64>>,
+    /// Leave out tiles of billboards that the ground hides as a whole, which changes no picture.
+    pub drops_hidden: bool,
 }
 
 impl Default for BladeDetail {
@@ -85,6 +87,7 @@ impl Default for BladeDetail {
             transition: Transition::Smooth,
             shadows: true,
             judged_from: None,
+            drops_hidden: true,
         }
     }
 }

@@ -67,6 +67,8 @@ impl ClumpTextures {
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
                 mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                // Pressed clumps and quads turned aside are seen at a slant, as ghosts without it.
+                anisotropy_clamp: 4,
                 ..Default::default()
             }),
             bytes,

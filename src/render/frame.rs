@@ -5,7 +5,7 @@ use crate::field::Field;
 use crate::gpu::{FieldBuffers, Gpu, PassTimer};
 use crate::terrain::bintree::MeshChange;
 
-use super::billboards::{BillboardCounts, BillboardsLayer};
+use super::billboards::{BillboardCounts, BillboardForm, BillboardsLayer};
 use super::blade_tiles::Size;
 use super::bodies::{BodiesLayer, BodyInstance};
 use super::camera::View;
@@ -257,17 +257,22 @@ impl Renderer {
         self.bodies.draw_shadow(&mut pass);
         drop(pass);
 
-        let billboards = self.billboards.as_ref().filter(|layer| !layer.is_empty());
-        let mut part = Part::Only;
-        if let Some(billboards) = billboards {
-            // First of all, since they hide the most.
-            let times = timer.render("billboards");
-            let mut pass = self.targets.begin(&mut encoder, Part::First, times);
+        let mut is_begun = false;
+        // First of all, since they hide the most.
+        for form in [BillboardForm::Quad, BillboardForm::Refined] {
+            let layer = self.billboards.as_ref();
+            let Some(billboards) = layer.filter(|layer| layer.shows(form)) else {
+                continue;
+            };
+            let part = if is_begun { Part::Middle } else { Part::First };
+            let times = timer.render(form.pass());
+            let mut pass = self.targets.begin(&mut encoder, part, times);
             self.groups.bind(&mut pass);
-            billboards.draw(&mut pass);
+            billboards.draw(&mut pass, form);
             drop(pass);
-            part = Part::Last;
+            is_begun = true;
         }
+        let part = if is_begun { Part::Last } else { Part::Only };
         let times = timer.render("scene");
         let mut pass = self.targets.begin(&mut encoder, part, times);
         self.groups.bind(&mut pass);
@@ -370,7 +375,10 @@ impl Renderer {
             self.plants.clear();
         }
         match (&mut self.billboards, &input.blades) {
-            (Some(layer), Some(blades)) => layer.write(gpu, input.view, picture, blades)?,
+            (Some(layer), Some(blades)) => {
+                let error_px = self.terrain_detail.error_px;
+                layer.write(gpu, input.view, picture, error_px, blades)?;
+            }
             (Some(layer), None) => layer.clear(),
             (None, _) => {}
         }

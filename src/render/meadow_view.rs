@@ -43,19 +43,20 @@ pub fn active_slabs(meadow: &Meadow) -> Vec<(TileId, u32)> {
     tiles.iter().map(|tile| (tile.tile, tile.slab)).collect()
 }
 
-/// Boxes around tiles, as high as the grass: around all that are awake, and around resting ones
-/// within [`RESTING_SHOWN_M`] of the eye.
-pub fn tile_marks(meadow: &Meadow, eye_in_world: Vec3<f64>) -> Vec<TileMark> {
+/// Boxes around tiles, as high as what grows there: around all that are awake, as in figure 8 of O09, and
+/// around resting ones within [`RESTING_SHOWN_M`] of an eye that is given.
+pub fn tile_marks(meadow: &Meadow, resting_near: Option<Vec3<f64>>) -> Vec<TileMark> {
     let field = &meadow.field;
-    let [x, _, z] = eye_in_world.to_f64();
-    let near = Bounds {
-        low: [x - RESTING_SHOWN_M, f64::MIN, z - RESTING_SHOWN_M],
-        high: [x + RESTING_SHOWN_M, f64::MAX, z + RESTING_SHOWN_M],
-    };
     let mut tones = BTreeMap::new();
-    (field.octree).query(&field.grid, &field.ground, &near, 0.0, |tile| {
-        tones.insert(tile, TileTone::Resting);
-    });
+    if let Some([x, _, z]) = resting_near.map(Vec3::to_f64) {
+        let near = Bounds {
+            low: [x - RESTING_SHOWN_M, f64::MIN, z - RESTING_SHOWN_M],
+            high: [x + RESTING_SHOWN_M, f64::MAX, z + RESTING_SHOWN_M],
+        };
+        (field.octree).query(&field.grid, &field.ground, &near, 0.0, |tile| {
+            tones.insert(tile, TileTone::Resting);
+        });
+    }
     tones.extend(
         meadow
             .tiles
@@ -70,7 +71,7 @@ pub fn tile_marks(meadow: &Meadow, eye_in_world: Vec3<f64>) -> Vec<TileMark> {
         let heights = field.grid.tile_heights(tile, &field.ground).map(f64::from);
         TileMark {
             low_in_world: [low[0], heights[0], low[1]],
-            high_in_world: [high[0], heights[1] + f64::from(field.reach_m), high[1]],
+            high_in_world: [high[0], heights[1] + field.farthest_m(), high[1]],
             tone,
         }
     });
@@ -161,6 +162,31 @@ mod tests {
             let at = body.pose.place.to_f64();
             assert!(frustum.may_see(at, at), "{}", body.name);
         }
+    }
+
+    /// Boxes of figure 8: awake tiles alone, and as high as the tallest clumps.
+    #[test]
+    fn boxes_of_awake_tiles_hold_what_grows_there() {
+        let scene = "(terrain: (ground: Flat(size_m: (8, 8))), grass: (species: []), \
+            billboards: Some((density_per_m2: 30)), bodies: [(name: \"ball\", \
+            shape: Ball(radius_m: 0.2), position_m: (0, 0.2, 0), motion: Fixed)])";
+        let scene: Scene = ron::from_str(scene).expect("a scene");
+        let mut meadow = Meadow::new(scene, &Default::default()).expect("a meadow");
+        let mut grass = crate::sim::Grass::<f32>::new();
+        for _ in 0..2 {
+            crate::sim::tick(&mut meadow, &mut grass).expect("a sub-step");
+        }
+        let awake = tile_marks(&meadow, None);
+        assert_eq!(awake.len(), meadow.work.tiles.len());
+        assert!(awake.iter().all(|mark| mark.tone == TileTone::Colliding));
+        let billboards = meadow.field.billboards.as_ref().expect("some");
+        let tallest = billboards.all.iter().map(|one| one.height_m);
+        let tallest = f64::from(tallest.fold(0.0, most));
+        assert!(tallest > 0.4);
+        let low = |mark: &TileMark| mark.high_in_world[1] - mark.low_in_world[1];
+        assert!(awake.iter().all(|mark| low(mark) >= tallest));
+        let all = tile_marks(&meadow, Some(Vec3::ZERO));
+        assert_eq!(all.len() as u32, meadow.field.grid.tile_count());
     }
 
     #[test]

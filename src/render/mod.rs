@@ -3,7 +3,10 @@
 //! Pipelines and targets live as long as the renderer, the ground and the shapes as long as a
 //! scene, everything else for one frame. All positions go to the device relative to the eye.
 
+mod active_billboards;
 mod active_nodes;
+mod billboard_runs;
+mod billboard_surface;
 mod billboards;
 mod blade_tiles;
 mod blades;
@@ -39,6 +42,7 @@ mod tonemap;
 mod twigs;
 mod view_group;
 
+pub use active_billboards::{ActiveBillboards, BillboardNodes};
 pub use active_nodes::ActiveNodes;
 pub use billboards::BillboardCounts;
 pub use blade_tiles::{BladeDetail, Count, Submission, Transition};
@@ -59,7 +63,7 @@ pub use sky::{Daylight, Sun};
 pub use sort_plants::SeededClusters;
 pub use tonemap::Exposure;
 
-use crate::field::billboards::{MAX_CLUMPS, WIND_SHARE};
+use crate::field::billboards::MAX_CLUMPS;
 use crate::field::count::{BINS, COUNT_WORD, NEAR_M};
 use crate::field::grid::ANCHOR_CELLS;
 use crate::field::kinds::MAX_TASTES;
@@ -90,6 +94,7 @@ const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/area_count.wgsl", NEAR_M),
     wgsl_file!("shared/ball_in_view.wgsl"),
+    wgsl_file!("shared/billboard_surface.wgsl"),
     wgsl_file!("shared/coat.wgsl"),
     wgsl_file!("shared/count.wgsl", ANCHOR_CELLS, COUNT_WORD),
     wgsl_file!("shared/draw_args.wgsl"),
@@ -108,13 +113,7 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/screen.wgsl"),
     wgsl_file!("shared/shadow.wgsl"),
     wgsl_file!("shared/volume_light.wgsl"),
-    wgsl_file!(
-        "billboards.wgsl",
-        ANCHOR_CELLS,
-        CLUMP_TINT_MOST,
-        MAX_CLUMPS,
-        WIND_SHARE
-    ),
+    wgsl_file!("billboards.wgsl", ANCHOR_CELLS, CLUMP_TINT_MOST, MAX_CLUMPS),
     wgsl_file!("blades.wgsl", TUFT_RADIUS_M, TUFT_TURNS),
     wgsl_file!("bodies.wgsl"),
     wgsl_file!("coat.wgsl", COAT_VERTICES),
@@ -187,8 +186,9 @@ pub const SHADERS: &[WgslFile] = &[
 pub fn layouts() -> Vec<StructLayout> {
     vec![
         view_group::Frame::layout(),
+        billboard_surface::SurfaceTap::layout(),
         billboards::BillboardLook::layout(),
-        billboards::BillboardTile::layout(),
+        billboard_runs::BillboardTile::layout(),
         blade_tiles::DrawnTile::layout(),
         bodies::BodyRecord::layout(),
         coat_place::CoatBody::layout(),

@@ -11,6 +11,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, PassTimer};
 use crate::gpu_struct;
 use crate::scene::Form;
 
+use super::active_billboards::BillboardNodes;
 use super::blade_tiles::{BladeDetail, DrawnTile, Size, drawn_tiles, most_on_triangle};
 use super::camera::View;
 use super::canopy::Canopy;
@@ -71,6 +72,8 @@ pub struct BladesInput<'a> {
     /// [`GpuGrass::drawn`](crate::gpu::GpuGrass::drawn) or [`ActiveNodes`](super::ActiveNodes)
     /// lays them out: a row per node, root first.
     pub active_nodes: &'a Buffer<[f32; 4]>,
+    /// The same of billboards; `None` draws all of them as quads in the wind.
+    pub billboards: Option<BillboardNodes<'a>>,
     pub detail: BladeDetail,
 }
 

@@ -23,6 +23,7 @@ pub(super) struct Targets {
 pub(super) enum Part {
     Only,
     First,
+    Middle,
     Last,
 }
 
@@ -30,7 +31,7 @@ impl Part {
     fn load<V>(self, empty: V) -> wgpu::LoadOp<V> {
         match self {
             Self::Only | Self::First => wgpu::LoadOp::Clear(empty),
-            Self::Last => wgpu::LoadOp::Load,
+            Self::Middle | Self::Last => wgpu::LoadOp::Load,
         }
     }
 }
@@ -126,7 +127,7 @@ impl Targets {
         times: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
         let multisampled = self.samples > 1;
-        let is_last = part != Part::First;
+        let is_last = matches!(part, Part::Only | Part::Last);
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {

@@ -148,10 +148,12 @@ impl Against {
         let ours = touched_plants(meadow, engine)?;
         let theirs = touched_plants(&self.meadow, &mut self.engine)?;
         self.comparison.frame(&ours, &theirs);
-        let tiles = meadow.work.tiles.iter();
-        let billboards = tiles.flat_map(|tile| engine.standing_billboards(meadow, tile));
-        let touched = billboards.filter(|billboard| billboard.touched_at != 0);
-        self.billboards = self.billboards.max(touched.count() as u64);
+        let mut touched = 0;
+        for tile in &meadow.work.tiles {
+            let billboards = engine.standing_billboards(meadow, tile)?;
+            touched += billboards.iter().filter(|b| b.touched_at != 0).count() as u64;
+        }
+        self.billboards = self.billboards.max(touched);
         Ok(())
     }
 

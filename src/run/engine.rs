@@ -5,7 +5,6 @@ use std::collections::BTreeSet;
 use crate::base::Real;
 use crate::field::TileId;
 use crate::gpu::{Gpu, GpuError, GpuGrass, GpuState, GrassKernels, TickError};
-use crate::scene::Scene;
 use crate::sim::measure::{self, GrassState, Snapshot, Standing, StandingBillboard};
 use crate::sim::reference;
 use crate::sim::work::TileWork;
@@ -23,12 +22,6 @@ pub enum EngineChoice {
 }
 
 impl EngineChoice {
-    /// True where the gpu engine would be taken by default if it had what the scene needs: it has no
-    /// kernels for billboards. One that was asked for refuses such a scene.
-    pub fn falls_back(self, scene: &Scene) -> bool {
-        self == Self::Auto && scene.billboards.is_some()
-    }
-
     /// True if the gpu engine is to run on this device.
     pub fn is_gpu_on(self, gpu: &Gpu) -> bool {
         match self {
@@ -205,36 +198,48 @@ impl Engine {
         })
     }
 
-    /// Every billboard of an active tile as it stands, in the order of places. The gpu engine has none.
+    /// Every billboard of an active tile as it stands, in the order of places.
+    ///
+    /// # Errors
+    ///
+    /// The device's.
     pub fn standing_billboards(
-        &self,
+        &mut self,
         meadow: &Meadow,
         tile: &TileWork,
-    ) -> Vec<StandingBillboard<f64>> {
-        match self {
+    ) -> Result<Vec<StandingBillboard<f64>>, GpuError> {
+        Ok(match self {
             Self::Cpu(grass) => all_billboards(meadow, tile, grass),
             Self::Reference(grass) => all_billboards(meadow, tile, grass.as_ref()),
-            Self::Gpu(_) => Vec::new(),
-        }
+            Self::Gpu(engine) => all_billboards(meadow, tile, engine.state(meadow)?),
+        })
     }
 
-    /// The billboards rooted near a place. The gpu engine has none.
+    /// The billboards rooted near a place.
+    ///
+    /// # Errors
+    ///
+    /// The device's.
     pub fn billboards_near(
-        &self,
+        &mut self,
         meadow: &Meadow,
         place_m: [f64; 2],
         within_m: f64,
-    ) -> Vec<StandingBillboard<f64>> {
-        match self {
-            Self::Cpu(grass) => {
-                let near = measure::billboards_near(meadow, grass, place_m, within_m);
-                near.into_iter().map(StandingBillboard::widened).collect()
-            }
+    ) -> Result<Vec<StandingBillboard<f64>>, GpuError> {
+        let widened = |near: Vec<StandingBillboard<f32>>| {
+            let near = near.into_iter();
+            near.map(StandingBillboard::widened).collect()
+        };
+        Ok(match self {
+            Self::Cpu(grass) => widened(measure::billboards_near(meadow, grass, place_m, within_m)),
             Self::Reference(grass) => {
                 measure::billboards_near(meadow, grass.as_ref(), place_m, within_m)
             }
-            Self::Gpu(_) => Vec::new(),
-        }
+            Self::Gpu(engine) => {
+                let state = engine.state(meadow)?;
+                widened(measure::billboards_near(meadow, state, place_m, within_m))
+            }
+        })
     }
 
     /// Plants and billboards that a body has pushed at least `far_m` off within the last `ticks` ticks.

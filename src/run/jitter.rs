@@ -85,7 +85,7 @@ fn held_plants(meadow: &Meadow, engine: &mut Engine) -> Result<Held, GpuError> {
                 held.insert((tile.tile, Layer::Plants, order), plant.nodes);
             }
         }
-        let billboards = engine.standing_billboards(meadow, tile).into_iter();
+        let billboards = engine.standing_billboards(meadow, tile)?.into_iter();
         for (order, billboard) in billboards.enumerate() {
             if billboard.touched_at == meadow.work.now {
                 held.insert((tile.tile, Layer::Billboards, order), billboard.nodes);

@@ -69,7 +69,7 @@ impl Judge {
                 at_most_deg,
             } if due(*at_s) => {
                 let plants = engine.near(meadow, *near_m, *within_m)?;
-                let billboards = engine.billboards_near(meadow, *near_m, *within_m);
+                let billboards = engine.billboards_near(meadow, *near_m, *within_m)?;
                 let leans = plants.iter().map(|p| p.lean_rad());
                 let leans = leans.chain(billboards.iter().map(|b| b.lean_rad()));
                 let leans: Vec<f64> = leans.map(f64::to_degrees).collect();
@@ -91,7 +91,7 @@ impl Judge {
                 at_most_m,
             } if due(*at_s) => {
                 let plants = engine.near(meadow, *near_m, *within_m)?;
-                let billboards = engine.billboards_near(meadow, *near_m, *within_m);
+                let billboards = engine.billboards_near(meadow, *near_m, *within_m)?;
                 let offsets = plants.iter().map(|p| p.offset_m());
                 let offsets = offsets.chain(billboards.iter().map(|b| b.offset_m()));
                 let offsets: Vec<f64> = offsets.collect();

@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use crate::bodies::{Bodies, BodyError};
+use crate::gpu::billboards::GpuBillboards;
 use crate::gpu::{Gpu, GpuError, GrassKernels, PassTimer, TickError};
 use crate::render::{
-    ActiveNodes, BladeCounts, BladeDetail, BladesInput, Exposure, FrameInput, GroundLook,
-    RenderError, Renderer, Sun, View, active_slabs, bodies_at, scene_view, tile_marks,
+    ActiveBillboards, ActiveNodes, BillboardCounts, BillboardNodes, BladeCounts, BladeDetail,
+    BladesInput, Exposure, FrameInput, GroundLook, RenderError, Renderer, Sun, View, active_slabs,
+    bodies_at, scene_view, tile_marks,
 };
 use crate::scene::assets::Assets;
 use crate::scene::{Action, Camera, Likes, LoadedScene};
@@ -35,6 +37,7 @@ pub struct Stage {
     engine: Engine,
     /// What the cpu engine's grass is drawn from.
     nodes: ActiveNodes,
+    billboards: ActiveBillboards,
     renderer: Renderer,
     kernels: GrassKernels,
     timer: PassTimer,
@@ -46,6 +49,8 @@ pub struct Stage {
     pub sun: Sun,
     pub exposure: Exposure,
     pub detail: BladeDetail,
+    /// Whether the overlay has boxes around tiles at rest, too; without them it is that of figure 8 of O09.
+    pub resting_boxes: bool,
 }
 
 /// Why a stage cannot be set or shown.
@@ -117,6 +122,7 @@ impl Stage {
         show(gpu, &mut renderer, &meadow, &loaded.assets)?;
         Ok(Self {
             nodes: ActiveNodes::new(gpu)?,
+            billboards: ActiveBillboards::new(gpu)?,
             timer: PassTimer::new(gpu, DRAWN_PASSES),
             timeline: new_timeline(&meadow),
             shapes: known_shapes(&meadow.bodies),
@@ -124,6 +130,7 @@ impl Stage {
             exposure: Exposure::default(),
             detail: BladeDetail::of_device(gpu),
             light: light_of(gpu, &renderer, &meadow)?,
+            resting_boxes: true,
             loaded: loaded.clone(),
             meadow,
             engine,
@@ -269,8 +276,14 @@ impl Stage {
         }
         let meadow = &self.meadow;
         match &mut self.engine {
-            Engine::Cpu(grass) => self.nodes.copy(gpu, meadow, grass)?,
-            Engine::Reference(grass) => self.nodes.copy(gpu, meadow, grass.as_ref())?,
+            Engine::Cpu(grass) => {
+                self.nodes.copy(gpu, meadow, grass)?;
+                self.billboards.copy(gpu, meadow, grass)?;
+            }
+            Engine::Reference(grass) => {
+                self.nodes.copy(gpu, meadow, grass.as_ref())?;
+                self.billboards.copy(gpu, meadow, grass.as_ref())?;
+            }
             Engine::Gpu(engine) => engine.grass.recover()?,
         }
         let slabs = active_slabs(meadow);
@@ -278,8 +291,17 @@ impl Stage {
             Engine::Cpu(_) | Engine::Reference(_) => (&self.nodes.tiles, &self.nodes.nodes),
             Engine::Gpu(engine) => (&slabs, engine.grass.drawn()),
         };
+        let on_device = match &self.engine {
+            Engine::Gpu(engine) => engine.grass.billboards.as_ref(),
+            Engine::Cpu(_) | Engine::Reference(_) => None,
+        };
+        let on_device = on_device.map(|billboards| billboards.drawn(meadow));
+        let billboards = match &on_device {
+            Some((tiles, nodes)) => BillboardNodes { tiles, nodes },
+            None => self.billboards.drawn(),
+        };
         let marks = if overlay {
-            tile_marks(meadow, view.eye_in_world)
+            tile_marks(meadow, self.resting_boxes.then_some(view.eye_in_world))
         } else {
             Vec::new()
         };
@@ -294,12 +316,33 @@ impl Stage {
                 wind: &meadow.work.wind,
                 active,
                 active_nodes,
+                billboards: Some(billboards),
                 detail: self.detail,
             }),
             marks: &marks,
             time_s: meadow.time_s(),
         };
         Ok(self.renderer.draw(gpu, &input, target, &mut self.timer)?)
+    }
+
+    /// What the last picture drew of the billboards; `None` in a scene without them.
+    pub fn billboard_counts(&self) -> Option<BillboardCounts> {
+        self.renderer.billboard_counts()
+    }
+
+    /// Bytes on the device of the billboards' records, state and geometry, without their pictures; `None`
+    /// in a scene without them.
+    pub fn billboard_bytes(&self) -> Option<u64> {
+        let drawn = self.renderer.billboard_counts()?;
+        let simulated = match &self.engine {
+            // Its nodes are those that are drawn.
+            Engine::Gpu(engine) => {
+                let bytes = engine.grass.billboards.as_ref().map(GpuBillboards::bytes);
+                bytes.unwrap_or_default().iter().sum()
+            }
+            Engine::Cpu(_) | Engine::Reference(_) => drawn.nodes_bytes,
+        };
+        Some(drawn.state_bytes + simulated)
     }
 
     /// What the last picture drew of the plants.
@@ -337,7 +380,7 @@ fn lay_out(
     let mut meadow = Meadow::new(loaded.scene.clone(), &loaded.assets)?;
     let engine = if choice == EngineChoice::Reference {
         Engine::reference(&mut meadow)
-    } else if choice.is_gpu_on(gpu) && !choice.falls_back(&meadow.scene) {
+    } else if choice.is_gpu_on(gpu) {
         Engine::gpu(gpu, kernels, &mut meadow)?
     } else {
         Engine::cpu()

@@ -19,6 +19,11 @@ pub struct Billboards {
     /// Columns and rows of nodes that a billboard has while it is touched and until it has recovered.
     #[schemars(inner(range(min = limits::BILLBOARD_NODES.min, max = limits::BILLBOARD_NODES.max)))]
     pub nodes: [u32; 2],
+    /// Drawn segments per segment between the nodes of a touched billboard: more than 1 draw the smooth
+    /// surface through the nodes, 1 the nodes joined by straight lines, 0 the quad as if nothing had
+    /// touched it.
+    #[schemars(range(min = limits::DRAW_SUBDIVISION.min, max = limits::DRAW_SUBDIVISION.max))]
+    pub draw_subdivision: u32,
     /// Kinds of clumps, 1 to 8.
     #[schemars(length(min = 1, max = limits::CLUMPS))]
     pub clumps: Vec<ClumpKind>,
@@ -42,6 +47,7 @@ impl Default for Billboards {
             density_per_m2: 24.0,
             seed: 1,
             nodes: [4, 4],
+            draw_subdivision: 2,
             clumps: vec![ClumpKind::default()],
             extent: None,
             direction: None,

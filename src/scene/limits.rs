@@ -89,6 +89,8 @@ pub const BILLBOARDS: u64 = 1 << 22;
 pub const BILLBOARDS_PER_TILE: u64 = 4096;
 /// Nodes along one side of a touched billboard.
 pub const BILLBOARD_NODES: Range = range(3.0, 9.0, "nodes");
+/// Drawn segments per segment between nodes.
+pub const DRAW_SUBDIVISION: Range = range(0.0, 8.0, "segments");
 /// Kinds of clumps.
 pub const CLUMPS: usize = 8;
 /// Height or width of a clump.

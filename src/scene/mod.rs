@@ -45,6 +45,7 @@ pub use positions::Position;
 pub use schema::json_schema;
 pub use script::{Action, Event};
 pub use solver::{PhiloxRounds, Root, Solver};
+pub use syntax::probably_meant;
 pub use terrain::{Ground, Terrain};
 pub use validate::{Invalid, validate, validate_assets};
 pub use wind::Wind;

@@ -194,14 +194,21 @@ fn join(parent: &str, field: &str) -> String {
     }
 }
 
+/// The word that was probably meant by one that is none of the expected: a third of the letters wrong is a
+/// typing error, more is another word.
+pub fn probably_meant<'a>(
+    found: &str,
+    expected: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
+    let near = expected.into_iter().map(|e| (edit_distance(found, e), e));
+    near.min()
+        .filter(|&(distance, e)| 3 * distance <= e.chars().count().max(3))
+        .map(|(_, e)| e)
+}
+
 fn unknown(kind: &str, found: &str, expected: &[&str]) -> String {
-    let near = expected
-        .iter()
-        .map(|&e| (edit_distance(found, e), e))
-        .min()
-        // A third of the letters wrong is a typing error; more is another word.
-        .filter(|&(distance, e)| 3 * distance <= e.chars().count().max(3));
-    let hint = near.map_or_else(String::new, |(_, e)| format!("did you mean {e}? "));
+    let near = probably_meant(found, expected.iter().copied());
+    let hint = near.map_or_else(String::new, |e| format!("did you mean {e}? "));
     format!(
         "`{found}` is no known {kind}; {hint}allowed are {}",
         expected.join(", ")

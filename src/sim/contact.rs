@@ -182,7 +182,7 @@ impl<'a, R: Real> Touch<'a, R> {
         let exit = match self.collider {
             ColliderOf::Cube(cube) => cube.exit(p, kept, &reach),
             ColliderOf::Analytic(solid) => solid.exit(p, kept, &reach, |end| {
-                moment.is_covered(self, pose.point(end))
+                self.body.len() > 1 && moment.is_covered(self, pose.point(end))
             }),
             ColliderOf::Voxels(voxels) => voxels.exit(p),
         }?;

@@ -262,10 +262,11 @@ impl<R: Real> Solid<R> {
     fn nearest(&self, mut choice: Choice<R>, covered: impl Fn(Vec3<R>) -> bool) -> Option<Exit<R>> {
         let p = choice.p;
         for face in 0..self.feature_count() {
-            if self.feature(p, face).0 <= R::ZERO {
+            let way = self.feature(p, face);
+            if way.0 <= R::ZERO {
                 return None;
             }
-            let (depth, normal) = self.way_through(p, face, choice.reach);
+            let (depth, normal) = self.way_in_reach(p, face, way, choice.reach);
             let exit = Exit {
                 depth,
                 normal,
@@ -310,10 +311,15 @@ impl<R: Real> Solid<R> {
         }
     }
 
-    /// The shortest way out of a convex solid through a feature; through a round one the shortest that is
-    /// in a segment's reach.
-    fn way_through(&self, p: Vec3<R>, face: u32, reach: &Reach<R>) -> (R, Vec3<R>) {
-        let way = self.feature(p, face);
+    /// The shortest way out of a convex solid through a feature that is in a segment's reach; only through
+    /// round ones another than the shortest of all.
+    fn way_in_reach(
+        &self,
+        p: Vec3<R>,
+        face: u32,
+        way: (R, Vec3<R>),
+        reach: &Reach<R>,
+    ) -> (R, Vec3<R>) {
         match self {
             Self::Ball { radius } | Self::Capsule { radius, .. } => {
                 round::way_in_reach(p, way, *radius, reach)

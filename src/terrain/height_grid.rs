@@ -5,7 +5,7 @@
 //! odd: the pattern of a right-isosceles bintree at every even level, so that halved squares
 //! nest in it and a seeding triangle never straddles an edge.
 
-use crate::base::{Real, most, widened};
+use crate::base::{Real, least, most, widened};
 
 /// A rectangle of height samples. Place 0, 0 of the *field* is the corner with the smallest x and
 /// z.
@@ -108,15 +108,28 @@ impl HeightGrid {
     /// Height that the ground over a rectangle of the plan, and the squares around it, does not exceed, in
     /// metres; beyond the edge the ground goes on as it is there.
     pub fn highest_in_world(&self, low: [f64; 2], high: [f64; 2]) -> f32 {
+        let mut highest = f32::NEG_INFINITY;
+        self.each_around(low, high, |sample| highest = most(highest, sample));
+        highest
+    }
+
+    /// Height that the ground over a rectangle of the plan, and the squares around it, nowhere falls below, in
+    /// metres; beyond the edge the ground goes on as it is there.
+    pub fn lowest_in_world(&self, low: [f64; 2], high: [f64; 2]) -> f32 {
+        let mut lowest = f32::INFINITY;
+        self.each_around(low, high, |sample| lowest = least(lowest, sample));
+        lowest
+    }
+
+    /// Calls `each` with the samples of all squares that a rectangle of the plan touches.
+    fn each_around(&self, low: [f64; 2], high: [f64; 2], mut each: impl FnMut(f32)) {
         let (i0, _, j0, _) = self.locate(low[0], low[1]);
         let (i1, _, j1, _) = self.locate(high[0], high[1]);
-        let mut highest = f32::NEG_INFINITY;
         for row in j0..=j1 + 1 {
             for column in i0..=i1 + 1 {
-                highest = most(highest, self.sample(column, row));
+                each(self.sample(column, row));
             }
         }
-        highest
     }
 
     fn locate(&self, x: f64, z: f64) -> (u32, f64, u32, f64) {
@@ -166,19 +179,19 @@ mod tests {
     }
 
     #[test]
-    fn nothing_in_a_rectangle_is_higher_than_its_highest() {
+    fn nothing_in_a_rectangle_is_higher_than_its_highest_or_lower_than_its_lowest() {
         let grid = bumpy();
         for k in 0..200 {
             let low = [-6.0 + 0.05 * f64::from(k), -4.0 + 0.03 * f64::from(k)];
             let high = [low[0] + 1.3, low[1] + 0.7];
             let highest = f64::from(grid.highest_in_world(low, high));
+            let lowest = f64::from(grid.lowest_in_world(low, high));
             for part in 0..25 {
                 let share = [part % 5, part / 5].map(|n| f64::from(n) / 4.0);
                 let at = [0, 1].map(|a| low[a] + share[a] * (high[a] - low[a]));
-                assert!(
-                    grid.height_in_world(at[0], at[1]) <= highest + 1e-6,
-                    "{at:?}"
-                );
+                let height = grid.height_in_world(at[0], at[1]);
+                assert!(height <= highest + 1e-6, "{at:?}");
+                assert!(height >= lowest - 1e-6, "{at:?}");
             }
         }
     }

@@ -3,18 +3,22 @@
 use std::time::Instant;
 
 use libtest_mimic::Failed;
-use sward::field::Field;
+use sward::base::Vec3;
 use sward::field::billboards::PackedBillboard;
+use sward::field::{Field, WindNow};
 use sward::gpu::billboard_place::BillboardPlacing;
+use sward::gpu::field_data::TileRecord;
 use sward::scene::assets::{Assets, DirectionMap, GreyMap};
 use sward::scene::builtin::ASSETS;
-use sward::scene::{Billboards, ClumpKind, Messiness, Solver, parse_scene_with};
+use sward::scene::{Billboards, ClumpKind, Messiness, Solver, Wind, parse_scene_with};
 use sward::sim::Meadow;
+use sward::sim::billboard::Quad;
 use sward::terrain::CoverMap;
 
 use super::Device;
 use super::compare::{Difference, ensure};
 use super::meadows::bumpy_field;
+use super::probe::{self, ROWS};
 
 /// Maps of other sizes than the ground's squares, with borders, all directions and every messiness.
 fn assets() -> Assets {
@@ -196,4 +200,74 @@ pub fn ranges_of_many_tiles_are_equal(device: &Device) -> Result<(), Failed> {
     ensure(own.all.len() > 24_000, || {
         format!("{} billboards", own.all.len())
     })
+}
+
+/// Corners of quads in the wind, as drawn: lower left and right, upper left and right.
+const QUADS: &str = r#"
+#import "shared/billboard_quad.wgsl"
+#import "shared/tile.wgsl"
+@group(1) @binding(1) var<storage, read> tiles: array<TileRecord>;
+@group(1) @binding(7) var<storage, read_write> rows: array<vec4u>;
+
+@compute @workgroup_size(1)
+fn probe(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let n = group.x;
+    let root = vec3f(f32(n % 64u), f32(n % 7u), f32(n % 50u)) * 0.0625;
+    let record = BillboardRecord(
+        root,
+        (400u + n) | ((700u + 3u * n) << 16u),
+        signed_pair(vec2i(i32(n % 401u) - 200, i32(n % 301u) - 150) * 70),
+        signed_pair(vec2i(i32(n % 173u) - 86, i32(n % 211u) - 105) * 150 + 1),
+        (n * 4u) | ((n * 2741u) << 16u),
+        0u,
+    );
+    let quad = wind_quad(tiles[group.y].anchor, open_billboard(record));
+    let row = (group.y * groups.x + n) * 24u;
+    for (var corner = 0u; corner < 4u; corner++) {
+        let at = vec2f(f32(corner & 1u), f32(corner >> 1u));
+        rows[row + corner] = vec4u(bitcast<vec3u>(quad_place(quad, at)), record.size);
+    }
+}
+"#;
+
+/// The corners that are drawn are those that the kernel simulates from. A corner is a sum of three terms of
+/// up to 4 m, each rounded, 2.4e-7 m a time, on either side: 1.5e-6 m. Its lean is a unit vector of numbers
+/// that differ by 4e-7 after the gusts' sines (`wind_poses_agree`), over up to 0.35 m.
+pub fn quads_in_the_wind_agree(device: &Device) -> Result<(), Failed> {
+    let field = bumpy_field(&Solver::default())?;
+    let anchor_m = f64::from(field.grid.cell_m) * 4.0;
+    let wind = WindNow::at(&Wind::default(), 1234.5, anchor_m, 1.0);
+    let records: Vec<TileRecord> = (0..field.grid.tile_count())
+        .map(|tile| TileRecord::resting(&field, tile))
+        .collect();
+    let count = 1024;
+    let rows = probe::run(&device.gpu, QUADS, &field, &wind, &records, count)?;
+    let mut apart = Difference::new("corners of quads", "m");
+    let (mut equal, mut all) = (0, 0);
+    for (at, rows) in rows.chunks_exact(ROWS).enumerate() {
+        let (tile, n) = (at as u32 / count, at as u32 % count);
+        let pair = |x: i32, z: i32| (x as u32 & 0xffff) | ((z as u32) << 16);
+        let packed = PackedBillboard {
+            root_in_anchor: [n % 64, n % 7, n % 50].map(|n| n as f32 * 0.0625),
+            size: (400 + n) | ((700 + 3 * n) << 16),
+            up: pair((n as i32 % 401 - 200) * 70, (n as i32 % 301 - 150) * 70),
+            across: pair(
+                (n as i32 % 173 - 86) * 150 + 1,
+                (n as i32 % 211 - 105) * 150 + 1,
+            ),
+            sway: (n * 4) | (n.wrapping_mul(2741) << 16),
+            tile_and_texture: 0,
+        };
+        let anchor = field.grid.anchor_of(tile, &field.ground);
+        let quad: Quad<f32> = Quad::in_wind(&packed.open(), &anchor, &wind);
+        for (want, row) in quad.vertices().into_iter().zip(rows) {
+            let got: Vec3<f32> = Vec3::of_f32([row[0], row[1], row[2]].map(f32::from_bits));
+            equal += u32::from(got == want);
+            all += 1;
+            let off = Vec3::<f64>::of_f32(got.to_f32()) - Vec3::of_f32(want.to_f32());
+            apart.add(off.length(), || format!("tile {tile}, billboard {n}"));
+        }
+    }
+    println!("{equal} of {all} corners equal bit for bit");
+    apart.check(2e-6)
 }

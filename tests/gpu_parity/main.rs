@@ -1,6 +1,7 @@
 //! Each pass on the device against its twin in Rust, from the same input. Trials need a graphics
 //! adapter: without one they are ignored, and with `SWARD_REQUIRE_GPU=1` the missing adapter fails.
 
+mod billboard_runs;
 mod billboards;
 mod coats;
 mod compare;
@@ -37,6 +38,14 @@ const CHECKS: &[(&str, Check)] = &[
     ),
     ("billboards_are_equal", billboards::billboards_are_equal),
     (
+        "billboards_respond_alike",
+        billboard_runs::billboards_respond_alike,
+    ),
+    (
+        "a_car_falls_and_drives_off_alike",
+        billboard_runs::a_car_falls_and_drives_off_alike,
+    ),
+    (
         "sixty_thousand_billboards_are_equal",
         billboards::sixty_thousand_billboards_are_equal,
     ),
@@ -45,6 +54,10 @@ const CHECKS: &[(&str, Check)] = &[
         billboards::ranges_of_many_tiles_are_equal,
     ),
     ("light_volumes_agree", light::lookups_agree),
+    (
+        "quads_in_the_wind_agree",
+        billboards::quads_in_the_wind_agree,
+    ),
     ("wind_poses_agree", plants::wind_poses_agree),
     (
         "poses_about_the_knee_agree",

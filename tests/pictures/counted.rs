@@ -117,6 +117,7 @@ fn drawn(
             wind: &stage.meadow.work.wind,
             active: &[],
             active_nodes: &stage.nodes.nodes,
+            billboards: None,
             detail,
         }),
         marks: &[],

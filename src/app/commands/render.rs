@@ -74,6 +74,9 @@ pub struct Arguments {
     /// Show which tiles are awake
     #[arg(long)]
     overlay: bool,
+    /// Show tiles that collide in red and those that recover in green, and no others, as O09's figure 8
+    #[arg(long, conflicts_with = "overlay")]
+    awake_tiles: bool,
     /// The sun's height over the horizon in degrees, 2 to 90, and after a comma where it stands, from +x
     /// towards +z
     #[arg(long, value_name = "HEIGHT[,AZIMUTH]", value_parser = sun)]
@@ -124,6 +127,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     stage.camera(arguments.camera.as_deref())?;
     stage.sun = arguments.sun.unwrap_or(stage.sun);
     stage.detail.density = arguments.density;
+    stage.resting_boxes = !arguments.awake_tiles;
     stage.detail.shadows &= !arguments.no_plant_shadows;
     stage.detail.submission = match arguments.submission {
         SubmissionName::Exact => Submission::Exact,
@@ -284,7 +288,7 @@ impl Shoot<'_> {
         }
         self.stage.engine().check()?;
         let view = self.view()?;
-        let overlay = self.arguments.overlay;
+        let overlay = self.arguments.overlay || self.arguments.awake_tiles;
         (self.stage).draw(self.gpu, &view, &self.target.view, overlay)?;
         Ok(self.target.read(self.gpu)?)
     }

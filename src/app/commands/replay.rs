@@ -97,9 +97,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
         );
     }
     let device = match choice {
-        EngineChoice::Auto if arguments.verify || choice.falls_back(&loaded.scene) => {
-            Device::Processor
-        }
+        EngineChoice::Auto if arguments.verify => Device::Processor,
         _ => arguments.engine.open()?,
     };
     let mut follower = Follower {

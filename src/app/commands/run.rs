@@ -105,7 +105,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     scene_file::check_folders(&arguments.assets)?;
     let names = scene_file::distinct_names(&arguments.scenes);
     let mut outputs = Outputs::open(arguments, &names)?;
-    let device = without_gpu_for_billboards(arguments, arguments.engine.open()?);
+    let device = arguments.engine.open()?;
     refuse::unknown_to_gpu(&device, options.method)?;
     let adapter = device.gpu().map(Adapter::of);
     let mut report = Report::new(device.engine_name(), adapter, options.hz);
@@ -132,29 +132,6 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     outputs.finish(&report, arguments)?;
     printer.finish(&report)?;
     Ok(report.exit())
-}
-
-/// The cpu, for all scenes of the command, where the gpu was not asked for and one of them has billboards,
-/// which it has no kernels for: a report is of one engine.
-fn without_gpu_for_billboards(arguments: &Arguments, device: Device) -> Device {
-    let choice = arguments.engine.choice().unwrap_or_default();
-    let falls_back = |scene: &&PathBuf| {
-        // One that cannot be read is told of when it is its turn.
-        let loaded = scene_file::load(scene, &arguments.assets);
-        loaded.is_ok_and(|loaded| choice.falls_back(&loaded.scene))
-    };
-    if device.gpu().is_none() {
-        return device;
-    }
-    let Some(scene) = arguments.scenes.iter().find(falls_back) else {
-        return device;
-    };
-    let name = scene_file::name(scene);
-    log::info!(
-        "{name} has billboards, for which the gpu engine has no kernels yet: engine: cpu, {} threads",
-        rayon::current_num_threads()
-    );
-    Device::Processor
 }
 
 fn options(arguments: &Arguments) -> Result<RunOptions, Failure> {

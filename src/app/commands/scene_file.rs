@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use crate::app::Failure;
 use crate::scene::assets::{AssetSource, Folders, InOrder};
-use crate::scene::builtin::{ASSETS, load_builtin};
-use crate::scene::{AssetError, LoadedScene, Problem, SceneError, load_scene};
+use crate::scene::builtin::{ASSETS, SCENES, load_builtin};
+use crate::scene::{AssetError, LoadedScene, Problem, SceneError, load_scene, probably_meant};
 
 /// Reads a scene. A file goes before a built-in scene of the same name.
 ///
@@ -31,7 +31,8 @@ pub fn load(scene: &Path, assets: &[PathBuf]) -> Result<LoadedScene, SceneError>
     }
     let by_name = scene.to_str().filter(|_| !scene.is_file());
     let built_in = by_name.and_then(load_builtin);
-    built_in.unwrap_or_else(|| load_scene(scene, assets).map_err(named_nowhere))
+    built_in
+        .unwrap_or_else(|| load_scene(scene, assets).map_err(|error| named_nowhere(scene, error)))
 }
 
 /// Checks the folders of `--assets`: one that is not there would be looked in for nothing.
@@ -61,11 +62,16 @@ fn no_scene(path: &Path, what: &str) -> SceneError {
 }
 
 /// Says of a missing file that no scene of the program has that name either.
-fn named_nowhere(mut error: SceneError) -> SceneError {
+fn named_nowhere(scene: &Path, mut error: SceneError) -> SceneError {
     if let Problem::Unreadable(reason) = &mut error.problem
         && reason.kind() == io::ErrorKind::NotFound
     {
-        let text = format!("{reason}; nor is it one of the program's own: see `sward list`");
+        let own = SCENES.iter().map(|own| own.name);
+        let hint = match scene.to_str().and_then(|name| probably_meant(name, own)) {
+            Some(near) => format!("did you mean {near}?"),
+            None => "see `sward list`".to_owned(),
+        };
+        let text = format!("{reason}; nor is it one of the program's own: {hint}");
         *reason = io::Error::new(io::ErrorKind::NotFound, text);
     }
     error
@@ -111,6 +117,19 @@ pub fn distinct_names(scenes: &[PathBuf]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_name_with_a_typing_error_is_told_of_its_likeness() {
+        let of = |name: &str| {
+            load(Path::new(name), &[])
+                .map(|_| ())
+                .expect_err("no scene")
+        };
+        let near = of("ball_rol").to_string();
+        assert!(near.contains("did you mean ball_roll?"), "{near}");
+        let far = of("nowhere_near").to_string();
+        assert!(far.contains("see `sward list`"), "{far}");
+    }
 
     #[test]
     fn scenes_of_one_name_are_numbered() {

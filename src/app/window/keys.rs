@@ -12,6 +12,7 @@ pub enum Command {
     NextScene,
     DropBall,
     TileOverlay,
+    AwakeTiles,
     CameraMode,
     FrameAll,
     FrameBody,
@@ -71,6 +72,12 @@ pub const BINDINGS: &[Binding] = &[
         "T",
         Command::TileOverlay,
         "show the states of tiles",
+    ),
+    bind(
+        KeyCode::Digit8,
+        "8",
+        Command::AwakeTiles,
+        "show colliding and recovering tiles alone",
     ),
     bind(
         KeyCode::KeyC,

@@ -96,7 +96,16 @@ fn side_panel(ui: &mut egui::Ui, facts: &Facts<'_>, wishes: &mut Vec<Wish>) {
     });
     ui.horizontal(|ui| {
         for (text, on, command) in [
-            ("tiles", play.overlay, Command::TileOverlay),
+            (
+                "tiles",
+                play.overlay && play.stage.resting_boxes,
+                Command::TileOverlay,
+            ),
+            (
+                "awake",
+                play.overlay && !play.stage.resting_boxes,
+                Command::AwakeTiles,
+            ),
             ("help", false, Command::Help),
         ] {
             if ui.selectable_label(on, text).clicked() {
@@ -163,6 +172,16 @@ fn measures(ui: &mut egui::Ui, facts: &Facts<'_>) {
             row("plants moved", format!("{}", awake * plants));
             row("blades drawn", format!("{}", drawn.blades));
             row("triangles", format!("{}", drawn.triangles));
+            if let Some(drawn) = play.stage.billboard_counts() {
+                row("billboards", format!("{}", drawn.billboards));
+                row("  refined", format!("{}", drawn.refined));
+                let tiles = format!("{}, {} behind hills", drawn.tiles, drawn.hidden_tiles);
+                row("  tiles", tiles);
+                row(
+                    "  on device",
+                    bytes(play.stage.billboard_bytes().unwrap_or(0)),
+                );
+            }
             row("grass state", bytes(meadow.state_bytes()));
             let bodies = meadow.bodies.info();
             let awake = bodies.filter(|body| body.awake).count();

@@ -76,6 +76,12 @@ impl Play {
         })
     }
 
+    /// Shows the states of tiles, those at rest included or not; what is shown already is taken away.
+    pub fn toggle_overlay(&mut self, resting: bool) {
+        self.overlay = !self.overlay || self.stage.resting_boxes != resting;
+        self.stage.resting_boxes = resting;
+    }
+
     /// Puts the list's current scene on the stage, read anew.
     ///
     /// # Errors

@@ -92,7 +92,8 @@ impl SceneList {
         (self.current as isize + by).rem_euclid(count) as usize
     }
 
-    /// Adds a file, unless the program has the same scene and nobody asked for the file.
+    /// Adds a file. Of a scene that the program has too there is one line: the program's, or the file's where
+    /// that was asked for.
     fn add_file(&mut self, path: &Path, asked_for: bool) {
         let entry = SceneEntry::of_file(path, &self.assets);
         let known = |e: &SceneEntry| {
@@ -100,8 +101,10 @@ impl SceneList {
                 && e.description == entry.description
                 && matches!(e.origin, Origin::Program(_))
         };
-        if asked_for || !self.entries.iter().any(known) {
-            self.entries.push(entry);
+        match self.entries.iter().position(known) {
+            Some(same) if asked_for => self.entries[same] = entry,
+            Some(_) => {}
+            None => self.entries.push(entry),
         }
     }
 }
@@ -163,6 +166,18 @@ mod tests {
         list.current = list.line(-1);
         assert_ne!(list.current, start);
         assert_eq!(list.line(list.entries.len() as isize + 1), start);
+    }
+
+    #[test]
+    fn a_file_takes_the_line_of_the_program_s_scene_that_it_holds() {
+        let file = Path::new("scenes/still.ron");
+        let list = SceneList::new(Some(file), &[]).expect("the scenes folder");
+        let lines = list.entries.iter().filter(|entry| entry.name == "still");
+        assert_eq!(lines.count(), 1);
+        assert_eq!(
+            list.entries[list.current].origin,
+            Origin::File(file.to_path_buf())
+        );
     }
 
     #[test]

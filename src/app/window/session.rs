@@ -42,6 +42,7 @@ const SOFTWARE_DETAIL: BladeDetail = BladeDetail {
     transition: Transition::Smooth,
     shadows: true,
     judged_from: None,
+    drops_hidden: true,
 };
 /// Weight of the newest frame in the smoothed time of a frame.
 const FRAME_WEIGHT: f64 = 0.1;

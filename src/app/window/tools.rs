@@ -27,7 +27,8 @@ impl Session {
             Command::PreviousScene => self.choose(self.play.scenes.line(-1)),
             Command::NextScene => self.choose(self.play.scenes.line(1)),
             Command::DropBall => self.drop_ball(),
-            Command::TileOverlay => self.play.overlay = !self.play.overlay,
+            Command::TileOverlay => self.play.toggle_overlay(true),
+            Command::AwakeTiles => self.play.toggle_overlay(false),
             Command::CameraMode => self.next_camera(),
             Command::FrameAll => {
                 let (middle, radius_m) = self.play.whole_ball();

@@ -78,6 +78,8 @@ pub struct BillboardField {
     pub ranges: Vec<u32>,
     /// Columns and rows of nodes of a touched billboard.
     pub nodes: [u32; 2],
+    /// Drawn segments per segment between them.
+    pub draw_subdivision: u32,
     /// What the clumps look like, kind by kind.
     pub clumps: Vec<ClumpKind>,
     /// How far one of them can reach from its root, in metres.
@@ -144,6 +146,7 @@ impl BillboardField {
             all,
             ranges,
             nodes: billboards.nodes,
+            draw_subdivision: billboards.draw_subdivision,
             clumps: billboards.clumps.clone(),
             reach_m,
         })

@@ -55,7 +55,7 @@ impl CollidePass {
             ],
         );
         let groups = Groups::Indirect(&grass.groups, COLLIDE_GROUPS);
-        turns.record(gpu, into, grass, count, |into| {
+        turns.record(gpu, into, &grass.touched, count, |into| {
             self.collide.record(into, &bound, groups);
         });
     }

@@ -3,6 +3,7 @@
 //! Bind group 0 is the field ([`FieldBuffers`](super::FieldBuffers)); bind group 1 holds what one
 //! pass works on. Kernels live as long as the process needs them.
 
+pub mod billboard;
 pub mod collide;
 pub mod depth_cube;
 pub mod recover;
@@ -76,6 +77,25 @@ impl Kernel {
         bindings: &[(u32, Access)],
         workgroup: u32,
     ) -> Result<Self, GpuError> {
+        let size = Constant {
+            name: "WORKGROUP",
+            value: workgroup.into(),
+        };
+        Self::with_constants(gpu, library, path, name, bindings, &[size])
+    }
+
+    /// The same with other values for constants.
+    ///
+    /// # Errors
+    /// The shader's, with file and line.
+    pub fn with_constants(
+        gpu: &Gpu,
+        library: &'static [WgslFile],
+        path: &'static str,
+        name: &'static str,
+        bindings: &[(u32, Access)],
+        constants: &[Constant],
+    ) -> Result<Self, GpuError> {
         let entries: Vec<_> = bindings.iter().map(|&b| layout_entry(b)).collect();
         let layout = gpu
             .device
@@ -83,12 +103,8 @@ impl Kernel {
                 label: Some(name),
                 entries: &entries,
             });
-        let size = Constant {
-            name: "WORKGROUP",
-            value: workgroup.into(),
-        };
-        let source =
-            wgsl::assemble_with(pass_file(library, path)?, &[library, wgsl::SHARED], &[size])?;
+        let libraries = [library, wgsl::SHARED];
+        let source = wgsl::assemble_with(pass_file(library, path)?, &libraries, constants)?;
         let field = FieldBuffers::layout(gpu);
         Ok(Self {
             pipeline: gpu.compute_pipeline(&source, name, &[&field, &layout])?,

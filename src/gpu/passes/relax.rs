@@ -8,6 +8,12 @@ use crate::gpu::grass_buffers::{GrassBuffers, RELAX_GROUPS};
 use crate::gpu::turns::{Turns, TurnsPass};
 use crate::gpu::{Gpu, GpuError};
 
+/// The kernel that sets the size of a relax pass from the number of touched plants.
+pub(super) fn count_groups(gpu: &Gpu, workgroup: u32) -> Result<Kernel, GpuError> {
+    let bindings = [(4, Access::Write), (7, Access::Write)];
+    Kernel::new(gpu, "relax.wgsl", "count_groups", &bindings, workgroup)
+}
+
 /// The pass that pushes touched plants out and restores their shape.
 #[derive(Clone, Debug)]
 pub struct RelaxPass {
@@ -19,7 +25,6 @@ impl RelaxPass {
     /// # Errors
     /// The shader's.
     pub fn new(gpu: &Gpu, workgroup: u32) -> Result<Self, GpuError> {
-        let counting = [(4, Access::Write), (7, Access::Write)];
         let bindings = [
             (0, Access::Uniform),
             (1, Access::Read),
@@ -30,7 +35,7 @@ impl RelaxPass {
             (6, Access::Read),
         ];
         Ok(Self {
-            count_groups: Kernel::new(gpu, "relax.wgsl", "count_groups", &counting, workgroup)?,
+            count_groups: count_groups(gpu, workgroup)?,
             relax: Kernel::new(gpu, "relax.wgsl", "relax", &bindings, workgroup)?,
         })
     }
@@ -63,7 +68,7 @@ impl RelaxPass {
             ],
         );
         let groups = Groups::Indirect(&grass.groups, RELAX_GROUPS);
-        turns.record(gpu, into, grass, count, |into| {
+        turns.record(gpu, into, &grass.touched, count, |into| {
             self.relax.record(into, &bound, groups);
         });
     }

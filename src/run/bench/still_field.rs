@@ -84,6 +84,7 @@ impl StillField {
                 wind: &self.wind,
                 active: &[],
                 active_nodes: &self.nodes,
+                billboards: None,
                 detail,
             }),
             marks: &[],

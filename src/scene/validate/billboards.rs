@@ -17,6 +17,11 @@ pub(super) fn billboards(key: &Key, billboards: &Billboards) -> Check {
         &billboards.nodes,
         &limits::BILLBOARD_NODES,
     )?;
+    within(
+        &key.field("draw_subdivision"),
+        billboards.draw_subdivision,
+        &limits::DRAW_SUBDIVISION,
+    )?;
     let clumps = key.field("clumps");
     at_most(
         &clumps,

@@ -160,6 +160,11 @@ impl Weave {
             of_node,
         }
     }
+
+    /// Whether there are springs over every second node.
+    pub fn has_bends(&self) -> bool {
+        self.springs.iter().any(|spring| spring.side.is_bend())
+    }
 }
 
 fn side(grid: Grid, [earlier, later]: [usize; 2]) -> Side {

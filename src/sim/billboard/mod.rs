@@ -19,6 +19,7 @@
 )]
 
 pub mod batch;
+pub mod collide;
 pub mod grid;
 pub mod lanes;
 pub mod recover;

@@ -12,7 +12,7 @@ use super::grid::{SIDES, Thread};
 use super::lanes::Lanes;
 
 /// Ends of a spring are at one place where the square of its length is less, in square metres.
-const POINT_M2: f64 = 1e-24;
+pub const POINT_M2: f64 = 1e-24;
 
 /// Rest lengths of `L` billboards.
 #[derive(Clone, Debug)]

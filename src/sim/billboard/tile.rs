@@ -1,17 +1,17 @@
-//! The billboards of a tile: collide, relax and recover over the tile's slab.
+//! The billboards of a tile: their poses, and relax over the tile's slab.
 
 use crate::base::{Real, Vec3};
 use crate::field::{Anchor, WindNow};
-use crate::sim::collide::{self, MAX_MOVABLE, Movable};
+use crate::sim::collide::MAX_MOVABLE;
 use crate::sim::contact::{Moment, Touch};
 use crate::sim::recover::{Fading, is_back};
-use crate::sim::relax::{Bodies, Ground, sweeps_for};
+use crate::sim::relax::{Bodies, Ground};
 use crate::sim::slab::Slab;
 use crate::terrain::HeightGrid;
 
 use super::batch::{Batch, Lane};
 use super::recover::{Fade, Poses};
-use super::relax::{FINENESS, Outcome, Settings, respond};
+use super::relax::{Outcome, Settings, respond};
 use super::{Quad, Weave};
 use crate::field::Billboard;
 
@@ -58,11 +58,11 @@ pub struct Responded {
 }
 
 impl<'a, R: Real> Tile<'a, R> {
-    fn quad(&self, place: usize, wind: &WindNow) -> Quad<R> {
+    pub(super) fn quad(&self, place: usize, wind: &WindNow) -> Quad<R> {
         Quad::in_wind(&self.billboards[place], self.anchor, wind)
     }
 
-    fn offsets<'s>(&self, slab: &'s Slab<R>, place: usize) -> &'s [Vec3<R>] {
+    pub(super) fn offsets<'s>(&self, slab: &'s Slab<R>, place: usize) -> &'s [Vec3<R>] {
         let movable = self.weave.grid.movable();
         &slab.offsets[place * movable..][..movable]
     }
@@ -89,7 +89,7 @@ impl<'a, R: Real> Tile<'a, R> {
     }
 
     /// How a billboard fades at the end of the sub-step; one that was never touched has no offset left.
-    fn fade<'s>(&self, slab: &'s Slab<R>, place: usize) -> Fade<'s, R> {
+    pub(super) fn fade<'s>(&self, slab: &'s Slab<R>, place: usize) -> Fade<'s, R> {
         let touched_at = slab.touched_at[place];
         Fade {
             quad: self.quad(place, self.wind),
@@ -102,14 +102,14 @@ impl<'a, R: Real> Tile<'a, R> {
         }
     }
 
-    fn was_touched(&self, slab: &Slab<R>, place: usize) -> bool {
+    pub(super) fn was_touched(&self, slab: &Slab<R>, place: usize) -> bool {
         let touched_at = slab.touched_at[place];
         touched_at != 0 && self.now - touched_at == 1
     }
 
     /// Nodes that bodies meet in this sub-step, up to [`LANES`] billboards side by side: as each was left if
     /// it was touched in the sub-step before, wherever the wind has gone since, else in its pose of now.
-    fn before(&self, slab: &Slab<R>, places: &[u32], poses: &mut Poses<R, LANES>) {
+    pub(super) fn before(&self, slab: &Slab<R>, places: &[u32], poses: &mut Poses<R, LANES>) {
         let grid = self.weave.grid;
         let mut fades = [const { None }; LANES];
         for (fade, &place) in fades.iter_mut().zip(places) {
@@ -141,78 +141,17 @@ impl<'a, R: Real> Tile<'a, R> {
     }
 
     /// The movable nodes of a lane, as a list.
-    fn movable(&self, poses: &Poses<R, LANES>, lane: usize, nodes: &mut [Vec3<R>]) {
+    pub(super) fn movable(&self, poses: &Poses<R, LANES>, lane: usize, nodes: &mut [Vec3<R>]) {
         for (n, node) in nodes.iter_mut().enumerate() {
             *node = poses.nodes.get(self.weave.grid.columns + n, lane);
         }
     }
 
-    fn ground(&self) -> Ground<'a> {
+    pub(super) fn ground(&self) -> Ground<'a> {
         Ground {
             heights: self.ground,
             anchor: self.anchor,
         }
-    }
-
-    /// Billboards that a body touches or holds: bounding spheres first, then nodes (O09 section 5.2).
-    pub fn touched(&self, slab: &Slab<R>, poses: &mut Poses<R, LANES>, found: &mut Vec<Touched>) {
-        found.clear();
-        for place in 0..self.billboards.len() {
-            let board = &self.billboards[place];
-            let (root, reach) = (board.root(), board.reach_m());
-            let sweeps = sweeps_for(self.touches, root, reach).saturating_mul(FINENESS);
-            if sweeps > 0 {
-                let place = place as u32;
-                found.push(Touched { place, sweeps });
-            }
-        }
-        let near = std::mem::take(found);
-        for near in near.chunks(LANES) {
-            let mut places = [0; LANES];
-            for (place, near) in places.iter_mut().zip(near) {
-                *place = near.place;
-            }
-            self.before(slab, &places[..near.len()], poses);
-            let is_touched = near.iter().enumerate();
-            found.extend(is_touched.filter_map(|(lane, near)| self.meets(slab, poses, lane, near)));
-        }
-    }
-
-    /// Whether a billboard in reach of a body, with its nodes in a lane, is pushed or held by it.
-    fn meets(
-        &self,
-        slab: &Slab<R>,
-        poses: &Poses<R, LANES>,
-        lane: usize,
-        near: &Touched,
-    ) -> Option<Touched> {
-        let place = near.place as usize;
-        let mut room = [Vec3::ZERO; MAX_MOVABLE];
-        let nodes = &mut room[..self.weave.grid.movable()];
-        self.movable(poses, lane, nodes);
-        let before = self.was_touched(slab, place);
-        let ground = self.ground();
-        let pinned = |p: Vec3<R>| {
-            before
-                && p.y < self.ground_top_m + R::of(collide::PINNED_M)
-                && p.y - ground.below(p).y <= R::of(collide::PINNED_M)
-        };
-        let board = &self.billboards[place];
-        let (root, reach) = (board.root(), board.reach_m());
-        let movable = Movable { root, nodes };
-        if collide::touched(movable, self.touches, near.sweeps, reach, pinned) {
-            return Some(*near);
-        }
-        let stays = before
-            && (collide::held(movable, self.touches, reach) || {
-                let mut alone: Poses<R, 1> = Poses::new(self.weave);
-                alone.recover(self.weave, [&self.fade(slab, place)], &self.fading);
-                for (n, node) in nodes.iter_mut().enumerate() {
-                    *node = alone.nodes.get(self.weave.grid.columns + n, 0);
-                }
-                collide::in_the_way(Movable { root, nodes }, self.touches, reach)
-            });
-        stays.then_some(Touched { sweeps: 0, ..*near })
     }
 
     /// Pushes the touched billboards out, restores their shape and stores their offsets. `batch` and `poses`

@@ -115,7 +115,8 @@ pub(super) fn exit<R: Real>(
         let faces = member.solid.feature_count();
         if member.solid.depth(local) > R::ZERO {
             for face in 0..faces {
-                let (depth, normal) = member.solid.way_through(local, face, &local_reach);
+                let way = member.solid.feature(local, face);
+                let (depth, normal) = (member.solid).way_in_reach(local, face, way, &local_reach);
                 let normal = member.pose.turn.rotate(normal);
                 let end = p + normal * depth;
                 let covered = members.iter().enumerate().any(|(other, member)| {
