@@ -13,8 +13,11 @@ use wgpu::{BindingType, BufferBindingType, BufferUsages, ShaderStages};
 
 use super::Device;
 
-/// Rows of four words per place: red, green, blue with their means, the openness, light on a normal.
-const ROWS: usize = 5;
+/// Rows of four words per place: red, green, blue with their means, the openness, light on a normal, and on
+/// a leaf with it.
+const ROWS: usize = 6;
+/// Share of a leaf's light that comes from its other side.
+const LETS_THROUGH: f32 = 0.3;
 
 const PROBE: &str = r#"
 #import "shared/volume_light.wgsl"
@@ -25,12 +28,13 @@ const PROBE: &str = r#"
 @compute @workgroup_size(1)
 fn probe(@builtin(global_invocation_id) id: vec3u) {
     let at = sky_light_at(places_from_eye[id.x].xyz);
-    let first = id.x * 5u;
+    let first = id.x * 6u;
     found[first] = vec4f(at.leans[0], at.mean.r);
     found[first + 1u] = vec4f(at.leans[1], at.mean.g);
     found[first + 2u] = vec4f(at.leans[2], at.mean.b);
     found[first + 3u] = vec4f(at.openness);
     found[first + 4u] = vec4f(sky_light(at, vec3f(0.6, 0.0, 0.8)), 0.0);
+    found[first + 5u] = vec4f(leaf_sky_light(at, vec3f(0.6, 0.0, 0.8)), 0.0);
 }
 "#;
 
@@ -85,7 +89,7 @@ pub fn lookups_agree(device: &Device) -> Result<(), Failed> {
     let mut wrong = Vec::new();
     for (n, &place) in places.iter().enumerate() {
         let wanted = texels.at(place);
-        let lit = wanted.on(normal);
+        let (lit, other) = (wanted.on(normal), wanted.on(-normal));
         let rows = &found[n * ROWS..][..ROWS];
         let mut check = |what: &str, found: f32, wanted: f32, limit: f32| {
             // What is no number is not within the limit either.
@@ -106,6 +110,12 @@ pub fn lookups_agree(device: &Device) -> Result<(), Failed> {
                 "on a normal",
                 rows[4][colour],
                 lit[colour],
+                limit.iter().sum(),
+            );
+            check(
+                "on a leaf",
+                rows[5][colour],
+                lit[colour] + LETS_THROUGH * (other[colour] - lit[colour]),
                 limit.iter().sum(),
             );
         }
