@@ -2,6 +2,7 @@
 #import "shared/frame.wgsl"
 #import "shared/light.wgsl"
 #import "shared/shadow.wgsl"
+#import "shared/volume_light.wgsl"
 
 struct BodyRecord {
     turn: vec4f, // quaternion x, y, z, w: world_from_body
@@ -77,7 +78,9 @@ fn body_fragment(in: BodyFragment) -> @location(0) vec4f {
     let coat_open = sun_past_plants(body.cover);
     let reaches = sun_reaches(in.position_from_eye, normal) * coat_open;
     let sky_open = sky_past_plants(body.cover);
-    let diffuse = albedo * (frame.sun_rgb * facing * reaches + ambient_light(normal) * sky_open);
+    let sky = sky_light_on(in.position_from_eye, normal);
+    let from_sky = sky_light(sky, normal) * sky_open;
+    let diffuse = albedo * (frame.sun_rgb * facing * reaches + from_sky);
 
     // GGX with Schlick's Fresnel term and Kelemen's visibility; light is in units of pi.
     let half_way = normalize(sun + to_eye);
@@ -90,6 +93,6 @@ fn body_fragment(in: BodyFragment) -> @location(0) vec4f {
     let highlight = roughness2 / (spread * spread) * fresnel / (4.0 * v_h * v_h);
     let mirrored = reflect(-to_eye, normal);
     let rim = 0.04 + 0.5 * pow(1.0 - n_v, 5.0);
-    let gloss = frame.sun_rgb * highlight * facing * reaches + ambient_light(mirrored) * rim;
+    let gloss = frame.sun_rgb * highlight * facing * reaches + sky_light(sky, mirrored) * rim;
     return vec4f(through_air(diffuse + gloss * coat_open, in.position_from_eye), 1.0);
 }

@@ -91,7 +91,7 @@ fn on_head(drawn: DrawnPlant, corner: u32) -> FlowerPoint {
     let to_eye = -normalize(position);
     let facing = dot(select(cupped, -cupped, dot(cupped, to_eye) < 0.0), frame.sun_direction);
     let lit = max(facing, 0.0) + 1.6 * transmitted(facing, 0.3);
-    let radiance = frame.sun_rgb * (light.sun_open * lit) + ambient_light(cupped) * light.sky_open;
+    let radiance = frame.sun_rgb * (light.sun_open * lit) + sky_light(light.sky, cupped) * light.sky_open;
     let clip = frame.clip_from_eye * vec4f(position, 1.0);
     let turn = 8.0 * shade_byte(drawn.plant, 3u);
     let opacity = 1.33 / (widened * widened);

@@ -5,6 +5,7 @@
 #import "shared/light.wgsl"
 #import "shared/noise.wgsl"
 #import "shared/shadow.wgsl"
+#import "shared/volume_light.wgsl"
 
 struct Ground {
     columns: u32,
@@ -400,6 +401,7 @@ fn lit_ground(in: GroundPoint) -> vec4f {
     let against = pow(max(-dot(to_eye, frame.sun_direction), 0.0), 3.0);
     let through = vec3f(0.9, 1.0, 0.3) * (0.5 * grown * against);
     let sun = frame.sun_rgb * reaches * (vec3f(facing) + through);
-    let light = surface.albedo * (sun + ambient_light(normal));
+    let sky = sky_light(sky_light_at(in.position_from_eye), normal);
+    let light = surface.albedo * (sun + sky);
     return vec4f(through_air(light, in.position_from_eye), 1.0);
 }

@@ -139,6 +139,14 @@ fn numbers_out_of_range() {
         "(billboards: (clumps: [(look: Palm)]))" => "1:31" "billboards.clumps[0].look": "`Palm`", "Flowering";
         "(billboards: (clumps: [(season: Monsoon)]))" => "1:33" "billboards.clumps[0].season": "`Monsoon`", "Winter";
         "(billboards: (messiness: Even(1.5)))" => "1:26" "billboards.messiness": "is 1.5", "0 to 1";
+        "(light: (cell_m: 0.04))" => "1:18" "light.cell_m": "is 0.04", "0.05 to 1000 m";
+        "(light: (height_m: 0))" => "1:20" "light.height_m": "0.1 to 1000 m";
+        "(light: (slices: 1))" => "1:18" "light.slices": "is 1", "2 to 512 slices";
+        "(light: (rays: 15))" => "1:16" "light.rays": "is 15", "16 to 4096 rays";
+        "(light: (ray: 64))" => "1:10" "light.ray": "did you mean rays?";
+        "(terrain: (ground: Flat(size_m: (200, 1))), light: (cell_m: 0.05))" => "1:61" "light.cell_m": "4001 by 21 columns", "limit of 2048";
+        "(terrain: (ground: Flat(size_m: (100, 100))), light: (cell_m: 0.1))" => "1:63" "light.cell_m": "6012006 cells in 6 slices", "limit of 1048576";
+        "(terrain: (ground: Flat(size_m: (100, 100))), light: (cell_m: 0.25, rays: 600))" => "1:75" "light.rays": "is 600", "964806 cells", "limit of 536870912";
         "(billboards: (extent: \"none.png\"))" => "1:23" "billboards.extent": "none.png";
         "(terrain: (base_map: \"none.png\"))" => "1:22" "terrain.base_map": "none.png";
         "(terrain: (lush_rgb: (0, 2, 0)))" => "1:26" "terrain.lush_rgb[1]": "is 2", "0 to 1";

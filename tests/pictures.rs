@@ -25,6 +25,8 @@ mod counted;
 mod engines;
 #[path = "pictures/ground.rs"]
 mod ground;
+#[path = "pictures/light.rs"]
+mod light;
 #[path = "pictures/refined.rs"]
 mod refined;
 #[path = "pictures/stones.rs"]
@@ -85,6 +87,22 @@ const CHECKS: &[(&str, Check)] = &[
     ("coats_grow_outwards", coats::coats_grow_outwards),
     ("coats_grow_on_faces", coats::coats_grow_on_faces),
     ("no_coats_cost_nothing", coats::no_coats_cost_nothing),
+    (
+        "light_volumes_darken_what_sees_less_sky",
+        light::light_volumes_darken_what_sees_less_sky,
+    ),
+    (
+        "no_light_volumes_cost_nothing",
+        light::no_light_volumes_cost_nothing,
+    ),
+    (
+        "both_sides_of_clumps_are_lit",
+        light::both_sides_of_clumps_are_lit,
+    ),
+    (
+        "too_many_slices_are_refused",
+        light::too_many_slices_are_refused,
+    ),
     ("stones_go_back", stones::stones_go_back),
     ("stones_lie_where_shoved", stones::stones_lie_where_shoved),
     (

@@ -3,6 +3,7 @@
 #import "shared/frame.wgsl"
 #import "shared/light.wgsl"
 #import "shared/shadow.wgsl"
+#import "shared/volume_light.wgsl"
 
 // Half the least width of what is drawn, in pixels.
 const LEAST_HALF_PX = 0.46;
@@ -18,6 +19,7 @@ fn transmitted(towards_sun: f32, thickness: f32) -> f32 {
 struct PlantLight {
     sky_open: f32,
     sun_open: f32,
+    sky: SkyLight, // past the ground and the fixed bodies
 }
 
 // Reeves and Blau: neighbours leave less light further down. `cover` is the share of the sky that
@@ -25,7 +27,7 @@ struct PlantLight {
 fn light_between(cover: f32, below_top: f32, position: vec3f) -> PlantLight {
     let depth = cover * pow(below_top, 1.4);
     let sun_open = sun_past_plants(depth) * sun_reaches_cheaply(position + UP * 0.01);
-    return PlantLight(sky_past_plants(depth), sun_open);
+    return PlantLight(sky_past_plants(depth), sun_open, sky_light_at(position));
 }
 
 // Eq. 14 for a thin green leaf, per vertex: it is a few pixels wide.
@@ -45,10 +47,10 @@ fn leaf_radiance(
     let through = transmitted(facing, 0.4) * 2.0;
     let mirrored = reflect(-sun, normal);
     let glint = pow(max(dot(to_eye, mirrored), 0.0), 18.0) * 0.10 * step(0.0, facing);
-    let sheen = ambient_light(reflect(-to_eye, normal)) * (0.05 * light.sky_open);
+    let sheen = sky_light(light.sky, reflect(-to_eye, normal)) * (0.05 * light.sky_open);
     let direct = surface * soft + surface * vec3f(1.25, 1.15, 0.45) * through + vec3f(glint);
     return frame.sun_rgb * light.sun_open * direct
-        + ambient_light(normalize(normal + UP * 0.25)) * light.sky_open * surface
+        + leaf_sky_light(light.sky, normalize(normal + UP * 0.25)) * light.sky_open * surface
         + sheen;
 }
 
@@ -56,5 +58,6 @@ fn leaf_radiance(
 fn dull_radiance(surface: vec3f, normal: vec3f, light: PlantLight) -> vec3f {
     let facing = max(dot(normal, frame.sun_direction), 0.0);
     return surface
-        * (frame.sun_rgb * (light.sun_open * facing) + ambient_light(normal) * light.sky_open);
+        * (frame.sun_rgb * (light.sun_open * facing)
+            + sky_light(light.sky, normal) * light.sky_open);
 }

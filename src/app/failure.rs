@@ -101,8 +101,11 @@ fn exit_of_gpu(error: &GpuError) -> Exit {
 
 fn exit_of_stage(error: &StageError) -> Exit {
     match error {
-        StageError::Meadow(_) => Exit::Invalid,
+        StageError::Meadow(_) | StageError::Light(_) => Exit::Invalid,
         StageError::Gpu(error) | StageError::Render(RenderError::Gpu(error)) => exit_of_gpu(error),
+        StageError::Render(RenderError::ClumpLayers { .. } | RenderError::LightLayers { .. }) => {
+            Exit::NoAdapter
+        }
         StageError::Render(RenderError::PictureSize { .. } | RenderError::PictureBytes { .. })
         | StageError::UnknownCamera { .. } => Exit::Usage,
         StageError::Render(_) => Exit::Internal,

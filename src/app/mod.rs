@@ -4,6 +4,7 @@ mod cli;
 mod commands;
 mod device;
 mod failure;
+mod light_up;
 mod progress;
 mod values;
 mod window;

@@ -46,6 +46,17 @@ pub enum RenderError {
     )]
     ClumpLayers { layers: u32, limit: u32 },
 
+    #[error(
+        "light.slices is {slices}, which needs a texture of {layers} layers; the device's textures have \
+         at most {limit} (its max_texture_array_layers): write {most} or less"
+    )]
+    LightLayers {
+        slices: u32,
+        layers: u32,
+        limit: u32,
+        most: u32,
+    },
+
     #[error("{what} is {found}; {wanted}")]
     BadInput {
         what: &'static str,

@@ -15,6 +15,7 @@ use super::coat_scene::CoatScene;
 use super::error::RenderError;
 use super::ground_look::{GroundLook, GroundTexture};
 use super::ground_mesh::TerrainDetail;
+use super::light::{LightTexels, check_layers};
 use super::overlay::{OverlayLayer, TileMark};
 use super::plants::{BladeCounts, BladesInput, DrawnPlants, PlantsLayer};
 use super::seed_triangles::SeededTriangles;
@@ -151,6 +152,33 @@ impl Renderer {
             }
         }
         Ok(())
+    }
+
+    /// Lights the next frames from volumes; `None` as if nothing hid the sky. A scene that is set later
+    /// keeps them until it gets its own.
+    ///
+    /// # Errors
+    /// Volumes that the device cannot hold.
+    pub fn set_light(
+        &mut self,
+        gpu: &Gpu,
+        texels: Option<&LightTexels>,
+    ) -> Result<(), RenderError> {
+        self.groups.set_light(gpu, texels)
+    }
+
+    /// Refuses so many slices of light volumes before anything is traced for them.
+    ///
+    /// # Errors
+    /// More slices than the device's textures have layers for.
+    pub fn check_light(&self, gpu: &Gpu, slices: u32) -> Result<(), RenderError> {
+        check_layers(slices, gpu.device.limits().max_texture_array_layers)
+    }
+
+    /// Bytes of light volumes on the device. Where there is none, a texel of each kind for the bindings, 29
+    /// bytes: shaders look none of them up.
+    pub fn light_bytes(&self) -> u64 {
+        self.groups.light_bytes()
     }
 
     /// Makes targets for another picture size; the same size costs nothing.
@@ -336,7 +364,7 @@ impl Renderer {
         let fit = ShadowFit::new(&light, input.view, &casters);
         let detail = input.blades.map(|blades| blades.detail);
         let frame = Frame::new(input.view, size, &light, &fit, detail, input.time_s);
-        self.groups.write(gpu, frame)?;
+        self.groups.write(gpu, input.view, frame)?;
         let blades = input.blades.as_ref();
         self.terrain
             .write(gpu, input.view, size, self.terrain_detail, blades)?;

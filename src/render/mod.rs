@@ -25,6 +25,7 @@ mod gravel;
 mod ground_look;
 mod ground_mesh;
 mod leaves;
+pub mod light;
 mod meadow_view;
 mod overlay;
 mod picture;
@@ -111,6 +112,7 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/planar_shadow.wgsl"),
     wgsl_file!("shared/screen.wgsl"),
     wgsl_file!("shared/shadow.wgsl"),
+    wgsl_file!("shared/volume_light.wgsl"),
     wgsl_file!("billboards.wgsl", ANCHOR_CELLS, CLUMP_TINT_MOST, MAX_CLUMPS),
     wgsl_file!("blades.wgsl", TUFT_RADIUS_M, TUFT_TURNS),
     wgsl_file!("bodies.wgsl"),
@@ -194,6 +196,7 @@ pub fn layouts() -> Vec<StructLayout> {
         coat_place::CoatView::layout(),
         coat_place::PlacedPlant::layout(),
         coat_scene::CoatTriangle::layout(),
+        light::LightVolume::layout(),
         overlay::OverlayBox::layout(),
         plants::Bucket::layout(),
         plants::FormUniform::layout(),

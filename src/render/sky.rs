@@ -89,6 +89,23 @@ impl Sun {
     }
 }
 
+impl Daylight {
+    /// Radiance of the sky along a unit vector, without clouds and without the sun's disc. Twin:
+    /// `clear_sky` in `shaders/shared/light.wgsl`.
+    pub fn clear_sky(&self, direction: Vec3<f64>) -> [f64; 3] {
+        let towards_sun = direction.dot(Vec3::of_f32(self.sun_direction.to_f32()));
+        let haze = libm::exp(-7.0 * direction.y.max(0.0));
+        let broad = libm::pow((0.5 + 0.5 * towards_sun).max(0.0), 6.0);
+        let narrow = libm::pow(towards_sun.max(0.0), 90.0);
+        let glow = 0.10 * broad * haze + 0.03 * broad + 0.35 * narrow;
+        [0, 1, 2].map(|i| {
+            let [zenith, horizon, sun] =
+                [self.zenith_rgb, self.horizon_rgb, self.sun_rgb].map(|rgb| f64::from(rgb[i]));
+            zenith + (horizon - zenith) * haze + sun * glow
+        })
+    }
+}
+
 /// Draws the sky where nothing else is.
 #[derive(Debug)]
 pub(super) struct SkyLayer {

@@ -1,5 +1,5 @@
-//! Bind groups that layers share: 1, the view and the light; 2, the shadow map. Group 0 is the
-//! field's, for layers that draw plants; group 3 is a layer's own.
+//! Bind groups that layers share: 1, the view and the light; 2, the shadow map and the light volumes, or
+//! a texel in their place. Group 0 is the field's, for layers that draw plants; group 3 is a layer's own.
 
 use wgpu::{BindGroup, BindGroupLayout, BindingType, BufferUsages, ShaderStages};
 
@@ -8,6 +8,8 @@ use crate::gpu_struct;
 
 use super::blade_tiles::BladeDetail;
 use super::camera::View;
+use super::error::RenderError;
+use super::light::{LightTexels, LightTextures};
 use super::pipeline::{UNIFORM, bind_group, group_layout};
 use super::shadow::ShadowFit;
 use super::sky::Daylight;
@@ -92,6 +94,9 @@ pub(super) struct ViewGroups {
     shadow_layout: BindGroupLayout,
     frame_group: BindGroup,
     shadow_group: BindGroup,
+    shadow_map: wgpu::TextureView,
+    shadow_sampler: wgpu::Sampler,
+    light: LightTextures,
     frame: Buffer<Frame>,
 }
 
@@ -100,24 +105,15 @@ impl ViewGroups {
         let both = ShaderStages::VERTEX_FRAGMENT;
         let no_field_layout = group_layout(gpu, "no field", &[]);
         let frame_layout = group_layout(gpu, "view", &[(both, UNIFORM)]);
-        let shadow_layout = group_layout(
-            gpu,
-            "shadow map",
-            &[
-                (
-                    both,
-                    BindingType::Texture {
-                        sample_type: wgpu::TextureSampleType::Depth,
-                        view_dimension: wgpu::TextureViewDimension::D2,
-                        multisampled: false,
-                    },
-                ),
-                (
-                    both,
-                    BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
-                ),
-            ],
-        );
+        let shadow = BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Depth,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let comparison = BindingType::Sampler(wgpu::SamplerBindingType::Comparison);
+        let mut bindings = vec![(both, shadow), (both, comparison)];
+        bindings.extend(LightTextures::bindings());
+        let shadow_layout = group_layout(gpu, "shadow map and light", &bindings);
         let frame = Buffer::new(gpu, "view", 1, BufferUsages::UNIFORM)?;
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("shadow map"),
@@ -127,24 +123,42 @@ impl ViewGroups {
             ..Default::default()
         });
         let frame_group = bind_group(gpu, "view", &frame_layout, &[frame.binding()]);
-        let shadow_group = bind_group(
-            gpu,
-            "shadow map",
-            &shadow_layout,
-            &[
-                wgpu::BindingResource::TextureView(shadow_map),
-                wgpu::BindingResource::Sampler(&sampler),
-            ],
-        );
+        let light = LightTextures::none(gpu)?;
         Ok(Self {
             no_field_group: bind_group(gpu, "no field", &no_field_layout, &[]),
             no_field_layout,
             frame_layout,
-            shadow_layout,
             frame_group,
-            shadow_group,
+            shadow_group: shadow_group(gpu, &shadow_layout, shadow_map, &sampler, &light),
+            shadow_layout,
+            shadow_map: shadow_map.clone(),
+            shadow_sampler: sampler,
+            light,
             frame,
         })
+    }
+
+    /// Takes light volumes in place of the old ones; `None` lets them go.
+    ///
+    /// # Errors
+    /// Volumes that the device cannot hold.
+    pub(super) fn set_light(
+        &mut self,
+        gpu: &Gpu,
+        texels: Option<&LightTexels>,
+    ) -> Result<(), RenderError> {
+        self.light = match texels {
+            Some(texels) => LightTextures::new(gpu, texels)?,
+            None => LightTextures::none(gpu)?,
+        };
+        let (layout, map) = (&self.shadow_layout, &self.shadow_map);
+        self.shadow_group = shadow_group(gpu, layout, map, &self.shadow_sampler, &self.light);
+        Ok(())
+    }
+
+    /// Bytes of the light volumes on the device; a texel of each kind where the scene has none.
+    pub(super) fn light_bytes(&self) -> u64 {
+        self.light.bytes()
     }
 
     /// Groups of a layer without data of its own.
@@ -181,13 +195,29 @@ impl ViewGroups {
         pass.set_bind_group(1, &self.frame_group, &[]);
     }
 
-    /// Binds the view and the shadow map; group 0 stays empty.
+    /// Binds the view, the shadow map and the light volumes; group 0 stays empty.
     pub(super) fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
         self.bind_unlit(pass);
         pass.set_bind_group(2, &self.shadow_group, &[]);
     }
 
-    pub(super) fn write(&self, gpu: &Gpu, frame: Frame) -> Result<(), GpuError> {
+    pub(super) fn write(&self, gpu: &Gpu, view: &View, frame: Frame) -> Result<(), GpuError> {
+        self.light.write(gpu, view)?;
         self.frame.write(gpu, 0, &[frame])
     }
+}
+
+fn shadow_group(
+    gpu: &Gpu,
+    layout: &BindGroupLayout,
+    shadow_map: &wgpu::TextureView,
+    sampler: &wgpu::Sampler,
+    light: &LightTextures,
+) -> BindGroup {
+    let mut resources = vec![
+        wgpu::BindingResource::TextureView(shadow_map),
+        wgpu::BindingResource::Sampler(sampler),
+    ];
+    resources.extend(light.resources());
+    bind_group(gpu, "shadow map and light", layout, &resources)
 }

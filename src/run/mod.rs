@@ -10,6 +10,7 @@ mod exit;
 mod jitter;
 pub mod judge;
 pub mod junit;
+pub mod light;
 pub mod methods;
 mod pass_times;
 pub mod recording;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, BodyError};
 use crate::gpu::billboards::GpuBillboards;
 use crate::gpu::{Gpu, GpuError, GrassKernels, PassTimer, TickError};
 use crate::render::{
@@ -15,7 +15,12 @@ use crate::scene::{Action, Camera, Likes, LoadedScene};
 use crate::sim::{Meadow, MeadowError};
 use crate::terrain::ColourMap;
 
+mod light;
+
+use light::light_of;
+
 use super::engine::{Engine, EngineChoice};
+use super::light::StageLight;
 use super::scenario::Outcome;
 use super::timeline::Timeline;
 
@@ -37,6 +42,8 @@ pub struct Stage {
     kernels: GrassKernels,
     timer: PassTimer,
     timeline: Timeline,
+    /// None where the scene does not ask for light volumes.
+    light: Option<StageLight>,
     /// Body shapes the renderer knows.
     shapes: [usize; 2],
     pub sun: Sun,
@@ -55,6 +62,8 @@ pub enum StageError {
     Gpu(#[from] GpuError),
     #[error(transparent)]
     Render(#[from] RenderError),
+    #[error("the light volumes: {0}")]
+    Light(BodyError),
     #[error("the scene has no camera '{name}'; it has {known}")]
     UnknownCamera { name: String, known: String },
 }
@@ -120,6 +129,7 @@ impl Stage {
             sun: Sun::default(),
             exposure: Exposure::default(),
             detail: BladeDetail::of_device(gpu),
+            light: light_of(gpu, &renderer, &meadow)?,
             resting_boxes: true,
             loaded: loaded.clone(),
             meadow,
@@ -141,7 +151,10 @@ impl Stage {
         choice: EngineChoice,
     ) -> Result<(), StageError> {
         let (meadow, engine) = lay_out(gpu, &self.kernels, loaded, choice)?;
+        let light = light_of(gpu, &self.renderer, &meadow)?;
         show(gpu, &mut self.renderer, &meadow, &loaded.assets)?;
+        self.renderer.set_light(gpu, None)?;
+        self.light = light;
         self.timeline = new_timeline(&meadow);
         self.shapes = known_shapes(&meadow.bodies);
         self.loaded = loaded.clone();
@@ -258,6 +271,9 @@ impl Stage {
         overlay: bool,
     ) -> Result<(), StageError> {
         self.take_in_shapes(gpu)?;
+        if let Some(light) = &mut self.light {
+            light.follow(gpu, &mut self.renderer, self.sun)?;
+        }
         let meadow = &self.meadow;
         match &mut self.engine {
             Engine::Cpu(grass) => {

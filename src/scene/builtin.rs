@@ -30,6 +30,7 @@ macro_rules! builtin {
 pub const SCENES: &[Builtin] = builtin![
     "ball_drop",
     "ball_roll",
+    "boulders",
     "heath",
     "hills",
     "hundred_bodies",

@@ -130,6 +130,19 @@ pub const WIND_BEND: Range = range(0.0, 10.0, "");
 pub const GUST_LENGTH: Range = range(0.1, 10_000.0, "m");
 pub const GUST_SPEED: Range = range(0.0, 200.0, "m/s");
 
+/// Distance of the columns of light volumes.
+pub const LIGHT_CELL: Range = range(0.05, 1000.0, "m");
+pub const LIGHT_HEIGHT: Range = range(0.1, 1000.0, "m");
+/// The textures have four layers for each; a device may allow fewer than that makes.
+pub const LIGHT_SLICES: Range = range(2.0, 512.0, "slices");
+pub const LIGHT_RAYS: Range = range(16.0, 4096.0, "rays");
+/// Columns of light volumes along one side.
+pub const LIGHT_COLUMNS: u64 = 2048;
+/// Cells of light volumes: the textures of them are then 25 MiB.
+pub const LIGHT_CELLS: u64 = 1 << 20;
+/// Rays of all cells of light volumes: a bit is kept of each, 64 MiB of them.
+pub const LIGHT_ALL_RAYS: u64 = 1 << 29;
+
 pub const SUBSTEP: Range = range(1e-4, 1.0 / 15.0, "s");
 pub const RECOVERY: Range = range(0.01, 60.0, "s");
 pub const SEGMENTS: Range = range(1.0, 16.0, "");

@@ -15,6 +15,7 @@ mod error;
 mod expect;
 mod extent;
 mod grass;
+mod light;
 pub mod limits;
 mod load;
 pub mod method;
@@ -34,6 +35,7 @@ pub use coat::{Coat, CoatForm, CoatedSurface};
 pub use error::{AssetError, Problem, SceneError};
 pub use expect::Expectation;
 pub use grass::{Form, Grass, Likes, Phototropic, Response, Species};
+pub use light::LightVolumes;
 pub use load::{
     LoadedScene, load_scene, parse_scene, parse_scene_with, parse_value, read_text, scene_files,
     to_ron, value_to_ron,
@@ -72,6 +74,10 @@ pub struct Scene {
     pub bodies: Vec<Body>,
     /// Timed events, in any order.
     pub script: Vec<Event>,
+    /// Light from volumes: of the sky past the ground and the fixed bodies. Without it nothing hides the
+    /// sky but the plants themselves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<LightVolumes>,
     /// Named views. Without one, a camera frames the bodies.
     pub cameras: Vec<Camera>,
     /// What must hold for the scene to pass.
@@ -91,6 +97,7 @@ impl Default for Scene {
             wind: Wind::default(),
             bodies: Vec::new(),
             script: Vec::new(),
+            light: None,
             cameras: Vec::new(),
             expect: Vec::new(),
             solver: Solver::default(),

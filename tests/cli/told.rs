@@ -296,3 +296,48 @@ fn billboards_run_on_every_engine() {
         "{told}"
     );
 }
+
+/// Volumes past the device's limit are refused with key, value and limit before anything is traced; a cache
+/// that cannot be written to is told of, and the picture is there.
+#[test]
+fn light_volumes_are_refused_or_told_of() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("cli");
+    let picture = folder.join("lit.png").display().to_string();
+    let render = |name: &str, light: &str| {
+        let text = format!("(terrain: (ground: Flat(size_m: (2, 2))), light: ({light}))");
+        let scene = scene(name, &text);
+        Command::new(env!("CARGO_BIN_EXE_sward"))
+            .args([
+                "render", &scene, "--at", "0", "--size", "64x36", "--out", &picture,
+            ])
+            // A file where the folder ought to be.
+            .env("SWARD_CACHE", &scene)
+            .stdin(Stdio::null())
+            .output()
+            .expect("the program starts")
+    };
+    let output = render("lit.ron", "slices: 2, rays: 16");
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    if text.contains("no graphics adapter") {
+        assert_eq!(code(&output), 4, "{text}");
+        return;
+    }
+    assert_eq!(code(&output), 0, "{text}");
+    assert!(
+        text.contains("SWARD_CACHE") && text.contains("not kept"),
+        "{text}"
+    );
+
+    let output = render("tall.ron", "slices: 512, rays: 16");
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    // Some devices have 2,048 layers, and are asked for the 256 that all have.
+    assert_eq!(code(&output), 4, "{text}");
+    for word in [
+        "light.slices is 512",
+        "1536 layers",
+        "at most 256",
+        "85 or less",
+    ] {
+        assert!(text.contains(word), "{text}");
+    }
+}

@@ -6,6 +6,7 @@ mod billboards;
 mod coats;
 mod compare;
 mod cubes;
+mod light;
 mod meadows;
 mod passes;
 mod plants;
@@ -52,6 +53,7 @@ const CHECKS: &[(&str, Check)] = &[
         "ranges_of_many_tiles_are_equal",
         billboards::ranges_of_many_tiles_are_equal,
     ),
+    ("light_volumes_agree", light::lookups_agree),
     (
         "quads_in_the_wind_agree",
         billboards::quads_in_the_wind_agree,

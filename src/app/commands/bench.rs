@@ -9,7 +9,9 @@ use serde::Serialize;
 
 use super::bench_flight::FlightArguments;
 use super::outputs::make_folder;
-use super::{bench_flight, bench_popping, bench_submission, bench_terrain, scene_file};
+use super::{
+    bench_flight, bench_light, bench_popping, bench_submission, bench_terrain, scene_file,
+};
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
 use crate::app::progress::Progress;
@@ -53,6 +55,9 @@ enum Bench {
     /// The flight of P15 section 4 over 20 km²: time of a frame, load, seeding by the size of clusters;
     /// needs a graphics adapter
     Flight,
+    /// Light volumes of `boulders`: time to work them out, memory, time of a picture with them and without;
+    /// needs a graphics adapter
+    Light,
 }
 
 impl Bench {
@@ -87,6 +92,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
         Bench::Tiles => run_tiles(arguments, out),
         Bench::Terrain => bench_terrain::run(arguments, out),
         Bench::Flight => bench_flight::run(arguments, out),
+        Bench::Light => bench_light::run(arguments, out),
         Bench::Popping => bench_popping::run(arguments, out),
         Bench::Submission => bench_submission::run(arguments, out),
     }

@@ -2,6 +2,7 @@
 
 pub mod bench;
 mod bench_flight;
+mod bench_light;
 mod bench_popping;
 mod bench_submission;
 mod bench_terrain;

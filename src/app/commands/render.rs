@@ -10,6 +10,7 @@ use super::outputs::ResultFile;
 use super::scene_file;
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
+use crate::app::light_up::light_up;
 use crate::app::progress::Progress;
 use crate::app::values::{density, number, whole};
 use crate::gpu::Gpu;
@@ -138,6 +139,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
         _ => arguments.out.clone(),
     };
     ResultFile::create(&first)?;
+    light_up(&gpu, &mut stage)?;
     let mut shoot = Shoot {
         arguments,
         gpu: &gpu,

@@ -6,6 +6,7 @@ use super::scenes::SceneList;
 use super::{Options, complain};
 use crate::app::Failure;
 use crate::app::commands::outputs::{ResultFile, make_folder};
+use crate::app::light_up::light_up;
 use crate::gpu::{Gpu, GpuError};
 use crate::render::PictureTarget;
 use crate::run::{Engine, EngineChoice, Exit, Stage, StageError};
@@ -65,6 +66,7 @@ fn with_picture(
         stage.tick()?;
     }
     stage.engine().check()?;
+    light_up(gpu, &mut stage)?;
     let view = stage.camera(None)?;
     stage.draw(gpu, &view, &target.view, false)?;
     let picture = target.read(gpu)?;

@@ -69,6 +69,9 @@ pub fn show(ui: &mut egui::Ui, facts: &Facts<'_>, shown: Shown, toasts: &mut Toa
         if facts.play.overlay {
             legend(ui, facts);
         }
+        if let Some(share) = facts.play.stage.pending_light() {
+            light_bar(ui, share);
+        }
     }
     if shown.help {
         help(ui);
@@ -275,6 +278,14 @@ fn help(ui: &egui::Ui) {
                     }
                 });
             });
+    });
+}
+
+/// How far light volumes are.
+fn light_bar(ui: &egui::Ui, share: f64) {
+    area(ui, "light", Align2::CENTER_TOP, [0.0, 8.0], |ui| {
+        let bar = egui::ProgressBar::new(share as f32).text("light volumes");
+        ui.add(bar.desired_width(PANEL_POINTS));
     });
 }
 

@@ -26,6 +26,7 @@ use crate::app::Failure;
 use crate::gpu::Gpu;
 use crate::render::{BladeDetail, Count, Submission, Transition, View};
 use crate::run::StageError;
+use crate::run::light::LightNews;
 
 /// Sides of the scene's picture over those of the window, where the processor draws.
 const SOFTWARE_SCALE: f64 = 0.5;
@@ -47,7 +48,7 @@ const SOFTWARE_DETAIL: BladeDetail = BladeDetail {
 const FRAME_WEIGHT: f64 = 0.1;
 /// How soon a frame that the surface refused is tried again.
 const RETRY: Duration = Duration::from_millis(20);
-/// How often messages are looked through while nothing else moves.
+/// How often messages, and light volumes in the making, are looked at while nothing else moves.
 const TOAST_TICK: Duration = Duration::from_millis(250);
 
 /// What to do after an event or a frame.
@@ -228,6 +229,7 @@ impl Session {
             self.gpu.check()?;
             self.toasts.error(error);
         }
+        self.tell_of_light();
         let (painting, wishes) = self.panels();
         let repaint_after = painting.repaint_after;
         self.show(texture, painting);
@@ -283,6 +285,15 @@ impl Session {
         stage.draw(&self.gpu, &view, self.canvas.scene_view(), overlay)
     }
 
+    fn tell_of_light(&mut self) {
+        for news in self.play.stage.take_light_news() {
+            match news {
+                LightNews::Told(text) => self.toasts.news(text),
+                LightNews::Trouble(text) => self.toasts.error(text),
+            }
+        }
+    }
+
     fn panels(&mut self) -> (Painting, Vec<Wish>) {
         let facts = Facts {
             play: &self.play,
@@ -332,7 +343,8 @@ impl Session {
         }
         self.last_frame = None;
         let has_toasts = self.toasts.current().next().is_some();
-        let wait = if has_toasts {
+        let is_lit_later = self.play.stage.pending_light().is_some();
+        let wait = if has_toasts || is_lit_later {
             repaint_after.min(TOAST_TICK)
         } else {
             repaint_after

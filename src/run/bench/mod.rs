@@ -1,6 +1,7 @@
 //! Benches: speed, always with the error beside it.
 
 pub mod flight;
+pub mod light;
 pub mod machine;
 pub mod popping;
 mod rig;
@@ -10,6 +11,7 @@ pub mod terrain;
 pub mod tiles;
 
 pub use flight::{FlightBench, FlightRequest, bench_flight};
+pub use light::{LightBench, bench_light};
 pub use machine::Machine;
 pub use popping::{PoppingBench, bench_popping};
 pub use still_field::DrawBenchError;

@@ -7,6 +7,7 @@ mod body;
 mod check;
 mod coat;
 mod expect;
+mod light;
 mod meadow;
 mod script;
 
@@ -39,8 +40,13 @@ pub fn validate(scene: &Scene) -> Result<(), Invalid> {
     }
     meadow::wind(&root.field("wind"), &scene.wind)?;
     meadow::solver(&root.field("solver"), &scene.solver)?;
+    if let Some(volumes) = &scene.light {
+        light::light(&root.field("light"), volumes)?;
+    }
     if let Some(samples) = ground_samples(&scene.terrain.ground) {
-        billboards::budget(scene, &size(scene, samples)?)?;
+        let field = size(scene, samples)?;
+        billboards::budget(scene, &field)?;
+        light::budget(scene, &field)?;
     }
     bodies(scene)?;
     coat::budget(scene, &Assets::default())?;
@@ -67,6 +73,7 @@ pub fn validate_assets(scene: &Scene, assets: &Assets) -> Result<(), Invalid> {
         billboards::maps(scene, assets, samples)?;
         let field = size(scene, samples)?;
         billboards::budget(scene, &field)?;
+        light::budget(scene, &field)?;
         expect::on_the_ground(&Key::root().field("expect"), scene, &field)?;
     }
     for (key, body) in bodies_with_keys(scene) {

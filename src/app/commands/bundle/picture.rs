@@ -3,6 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::app::Failure;
+use crate::app::light_up::light_up;
 use crate::gpu::{Gpu, GpuError};
 use crate::render::PictureTarget;
 use crate::run::{Device, Outcome, RunOptions, Stage, run_scene};
@@ -68,6 +69,7 @@ fn drawn(loaded: &LoadedScene, outcome: Outcome, gpu: &Gpu) -> Result<Vec<u8>, F
     let target = PictureTarget::new(gpu, SIZE)?;
     let time = format!("{:.6} s", outcome.meadow.time_s());
     let mut stage = Stage::of_run(gpu, loaded, outcome, PictureTarget::FORMAT, SIZE)?;
+    light_up(gpu, &mut stage)?;
     let view = stage.camera(None)?;
     stage.draw(gpu, &view, &target.view, false)?;
     let texts = [("Scene", loaded.name.as_str()), ("Time", &time)];
