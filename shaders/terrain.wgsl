@@ -1,5 +1,6 @@
 // The ground: the exact triangles of the height samples, and a land around them that runs to
 // the horizon. Host: src/render/terrain.rs.
+#import "shared/canopy_light.wgsl"
 #import "shared/frame.wgsl"
 #import "shared/kinds.wgsl"
 #import "shared/light.wgsl"
@@ -192,11 +193,9 @@ fn land_vertex(@builtin(vertex_index) vertex: u32) -> GroundPoint {
     return GroundPoint(clip, position, normal, place, max(out_m, 0.0));
 }
 
-// Share of the light that reaches the tops of the grass past other tops.
-const GRASS_TOP_OPEN = 0.54;
-
 struct Surface {
     albedo: vec3f,
+    canopy: vec3f, // colour of blades that are not drawn, where there are some
     relief_m: f32, // small height for bumps
     open: f32, // share of the light that comes past the plants
 }
@@ -222,7 +221,7 @@ fn floor_of_grass(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
     let green = smoothstep(0.25, 0.75, patches + 0.7 * (lumps - 0.5) + 0.35 * ground.cover);
     var albedo = mix(earth, moss, green);
     albedo = mix(albedo, leaves, thatch * mix(0.35, 0.6, ground.cover));
-    return Surface(albedo, 0.010 * lumps, 1.0 - 0.88 * ground.cover);
+    return Surface(albedo, vec3f(0.0), 0.010 * lumps, 1.0 - 0.88 * ground.cover);
 }
 
 // The field where single blades are too small to draw: tops of clumps, with dark between them.
@@ -240,7 +239,7 @@ fn top_of_grass(place: vec2f, base: vec3f, pixel_m: f32, long_pixel_m: f32) -> S
     let rgb = base * tint * light;
     // As many dry blades as among the drawn ones.
     let straw = dot(rgb, vec3f(0.3, 0.6, 0.1)) * vec3f(1.55, 1.2, 0.5);
-    return Surface(mix(rgb, straw, 0.2), 0.05 * clumps + 0.02 * tufts, GRASS_TOP_OPEN);
+    return Surface(vec3f(0.0), mix(rgb, straw, 0.2), 0.05 * clumps + 0.02 * tufts, 1.0);
 }
 
 // Stones side by side. Their relief ends before four pixels that share a slope are as long as a stone.
@@ -250,7 +249,7 @@ fn gravel_floor(place: vec2f, base: vec3f, pixel_m: f32, long_pixel_m: f32) -> S
     let lumps = mix(0.5, cloudy_noise(place * 5.0 + 2.0), detail_weight(0.2, pixel_m));
     let tone = 0.3 + 0.75 * stones + 0.35 * grains + 0.2 * lumps;
     let relief_m = 0.005 * stones * detail_weight(0.022, long_pixel_m);
-    return Surface(base * tone, relief_m, 0.72);
+    return Surface(base * tone, vec3f(0.0), relief_m, 0.72);
 }
 
 // Dead leaves over each other, with relief as that of stones.
@@ -260,13 +259,15 @@ fn litter_floor(place: vec2f, base: vec3f, pixel_m: f32, long_pixel_m: f32) -> S
     let pale = mix(0.5, cloudy_noise(place * 7.0 + 6.0), detail_weight(0.14, pixel_m));
     let rgb = base * mix(vec3f(0.85, 0.85, 0.85), vec3f(1.25, 1.1, 0.9), pale);
     let relief_m = 0.012 * leaves * detail_weight(0.05, long_pixel_m);
-    return Surface(rgb * (0.45 + 0.6 * leaves + 0.3 * edges), relief_m, 0.72);
+    let tone = 0.45 + 0.6 * leaves + 0.3 * edges;
+    return Surface(rgb * tone, vec3f(0.0), relief_m, 0.72);
 }
 
 fn bare_floor(place: vec2f, base: vec3f, pixel_m: f32) -> Surface {
     let lumps = mix(0.5, cloudy_noise(place * 9.0), detail_weight(0.11, pixel_m));
     let grains = mix(0.5, value_noise(place * 130.0), detail_weight(0.008, pixel_m));
-    return Surface(base * (0.6 + 0.6 * lumps + 0.2 * grains), 0.012 * lumps, 0.95);
+    let tone = 0.6 + 0.6 * lumps + 0.2 * grains;
+    return Surface(base * tone, vec3f(0.0), 0.012 * lumps, 0.95);
 }
 
 // Distance from the field's edge within which kinds by colour end.
@@ -305,6 +306,7 @@ fn look_shares(uv: vec2f, beyond_m: f32) -> vec4f {
 fn add_surface(sum: Surface, part: Surface, share: f32) -> Surface {
     return Surface(
         sum.albedo + part.albedo * (part.open * share),
+        sum.canopy + part.canopy * share,
         sum.relief_m + part.relief_m * share,
         sum.open + part.open * share,
     );
@@ -321,14 +323,15 @@ fn blended_surface(
 ) -> Surface {
     let place = in.place_in_field;
     let shares = look_shares(place / ground.map_m, in.beyond_m);
-    var sum = Surface(vec3f(0.0), 0.0, 0.0);
+    var sum = Surface(vec3f(0.0), vec3f(0.0), 0.0, 0.0);
     if shares[LOOK_GRASS] > 0.004 {
         let near = floor_of_grass(place, base, pixel_m);
         let far = top_of_grass(place, base, pixel_m, long_pixel_m);
         let grass = Surface(
-            mix(near.albedo, far.albedo, grown),
+            near.albedo * (1.0 - grown),
+            far.canopy * grown,
             mix(near.relief_m, far.relief_m, grown),
-            mix(near.open, far.open, grown),
+            near.open,
         );
         sum = add_surface(sum, grass, shares[LOOK_GRASS]);
     }
@@ -397,11 +400,10 @@ fn lit_ground(in: GroundPoint) -> vec4f {
     let normal = normalize(mix(flat_normal, bumpy, detail_weight(0.06, pixel_m)));
     let facing = max(dot(normal, frame.sun_direction), 0.0);
     let reaches = sun_reaches(in.position_from_eye, flat_normal);
-    // Light that grass lets through towards the eye when the sun stands behind it.
-    let against = pow(max(-dot(to_eye, frame.sun_direction), 0.0), 3.0);
-    let through = vec3f(0.9, 1.0, 0.3) * (0.5 * grown * against);
-    let sun = frame.sun_rgb * reaches * (vec3f(facing) + through);
     let sky = sky_light(sky_light_at(in.position_from_eye), normal);
-    let light = surface.albedo * (sun + sky);
+    var light = surface.albedo * (frame.sun_rgb * (reaches * facing) + sky);
+    if any(surface.canopy > vec3f(0.0)) {
+        light += canopy_radiance(surface.canopy, normal, in.position_from_eye, reaches);
+    }
     return vec4f(through_air(light, in.position_from_eye), 1.0);
 }

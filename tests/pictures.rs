@@ -15,6 +15,8 @@ use sward::scene::Scene;
 use sward::sim::{Grass, Meadow, tick};
 use sward::terrain::ColourMap;
 
+#[path = "pictures/canopy.rs"]
+mod canopy;
 #[path = "pictures/clumps.rs"]
 mod clumps;
 #[path = "pictures/coats.rs"]
@@ -49,6 +51,10 @@ const CHECKS: &[(&str, Check)] = &[
     (
         "a_coarser_ground_looks_like_the_full_one",
         ground::a_coarser_ground_looks_like_the_full_one,
+    ),
+    (
+        "ground_far_off_looks_like_its_plants",
+        canopy::ground_far_off_looks_like_its_plants,
     ),
     (
         "plants_are_sorted_by_form",
@@ -179,8 +185,8 @@ impl Stage {
                 billboards: shown.active.then(|| self.billboards.drawn()),
                 detail: BladeDetail {
                     full_m: shown.full_m,
-                    reach_m: 40.0,
-                    tuft: 1,
+                    reach_m: shown.reach_m,
+                    tuft: shown.tuft,
                     shadows: shown.shadows,
                     drops_hidden: shown.drops_hidden,
                     ..BladeDetail::default()
@@ -209,6 +215,8 @@ struct Shown {
     active: bool,
     sun: Sun,
     full_m: f32,
+    reach_m: f32,
+    tuft: u32,
     shadows: bool,
     drops_hidden: bool,
 }
@@ -236,6 +244,8 @@ const ALL: Shown = Shown {
     },
     // So far that everything in these pictures is drawn in full.
     full_m: 12.0,
+    reach_m: 40.0,
+    tuft: 1,
     shadows: true,
     drops_hidden: true,
 };

@@ -109,6 +109,7 @@ pub const SHADERS: &[WgslFile] = &[
     wgsl_file!("shared/light.wgsl"),
     wgsl_file!("shared/noise.wgsl"),
     wgsl_file!("shared/plant_light.wgsl"),
+    wgsl_file!("shared/canopy_light.wgsl"),
     wgsl_file!("shared/planar_shadow.wgsl"),
     wgsl_file!("shared/screen.wgsl"),
     wgsl_file!("shared/shadow.wgsl"),
