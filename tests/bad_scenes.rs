@@ -109,7 +109,9 @@ fn numbers_out_of_range() {
         "(grass: (species: [(form: Twig, response: Shoved)]))" => "1:43" "grass.species[0].response": "is Shoved", "only the form Gravel", "write Bends", "Stays";
         "(grass: (species: [(likes: (hsv: (361, 0, 0)))]))" => "1:35" "grass.species[0].likes.hsv[0]": "is 361", "0 to 360 degrees";
         "(grass: (species: [(likes: (hsv: (60, 1.5, 0)))]))" => "1:39" "grass.species[0].likes.hsv[1]": "is 1.5", "0 to 1";
-        "(grass: (species: [(likes: (weights: (0, 0, 0)))]))" => "1:38" "grass.species[0].likes.weights": "all 0";
+        "(grass: (species: [(likes: (weights: (0, 0, 0)))]))" => "1:38" "grass.species[0].likes.weights": "no colour differs", "1/64 for the hue";
+        "(grass: (species: [(likes: (weights: (0.0156, 0, 0)))]))" => "1:38" "grass.species[0].likes.weights": "no colour differs";
+        "(grass: (species: [(likes: (weights: (0, 0.0078, 0.005)))]))" => "1:38" "grass.species[0].likes.weights": "1/128";
         "(grass: (species: [(likes: (weights: (9, 0, 0)))]))" => "1:39" "grass.species[0].likes.weights[0]": "0 to 8";
         "(grass: (species: [(likes: (exponent: 0))]))" => "1:39" "grass.species[0].likes.exponent": "0.25 to 16";
         "(grass: (species: [(likes: (dwindle: 2))]))" => "1:38" "grass.species[0].likes.dwindle": "0 to 1";
@@ -352,6 +354,58 @@ fn assets_that_cannot_be_used() {
         text.contains("latin.ron:2:6: scene: the file is no UTF-8 text"),
         "{text}"
     );
+}
+
+/// A PNG of a size and pixel format, all of one value.
+fn plain_png([columns, rows]: [u32; 2], colour: png::ColorType, depth: png::BitDepth) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, columns, rows);
+    encoder.set_color(colour);
+    encoder.set_depth(depth);
+    let mut writer = encoder.write_header().expect("a valid header");
+    let bits = colour.samples() * depth as usize;
+    let data = vec![7; (columns as usize * bits).div_ceil(8) * rows as usize];
+    writer.write_image_data(&data).expect("as many bytes");
+    drop(writer);
+    bytes
+}
+
+/// A base map has a resolution of its own, but the ground's proportions and one of two pixel formats.
+#[test]
+fn base_maps_that_cannot_be_used() {
+    use png::{BitDepth, ColorType};
+    let folder = Folder::new("base-maps");
+    let scene = "(terrain: (ground: Flat(size_m: (8, 4)),\n base_map: \"map.png\"))";
+    let path = folder.write("s.ron", scene);
+    let load = |size, colour, depth| {
+        folder.write("map.png", plain_png(size, colour, depth));
+        load_scene(&path, &[]).map_err(|error| error.to_string())
+    };
+    for size in [[8, 4], [32, 16], [31, 16]] {
+        let loaded = load(size, ColorType::Rgb, BitDepth::Eight);
+        assert!(loaded.is_ok(), "{size:?}: {loaded:?}");
+    }
+    assert!(load([32, 16], ColorType::Rgba, BitDepth::Eight).is_ok());
+    for (size, colour, depth, says) in [
+        (
+            [32, 32],
+            ColorType::Rgb,
+            BitDepth::Eight,
+            "for 32 columns it needs 16 rows",
+        ),
+        (
+            [32, 17],
+            ColorType::Rgb,
+            BitDepth::Eight,
+            "for 32 columns it needs 16 rows",
+        ),
+        ([32, 16], ColorType::Grayscale, BitDepth::Eight, "8-bit RGB"),
+        ([32, 16], ColorType::Rgb, BitDepth::Sixteen, "8-bit RGB"),
+    ] {
+        let text = load(size, colour, depth).expect_err("of no use");
+        let head = format!("{}:2:12: terrain.base_map: ", path.display());
+        assert!(text.starts_with(&head) && text.contains(says), "{text}");
+    }
 }
 
 /// Bytes like a valid file's: the file with some bytes changed, cut or doubled.

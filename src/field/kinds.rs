@@ -24,7 +24,8 @@ use super::on_map::OnMap;
 pub const MAX_TASTES: usize = crate::scene::limits::SPECIES + crate::scene::limits::BARE_GROUNDS;
 /// Hues of a full turn: 2¹⁴ for each of the six edges of the colour hexagon.
 pub const HUE_TURN: u32 = 6 << 14;
-/// Least squared distance of colours, in units of 2⁻²⁴: a distance of 2⁻⁷, two steps of a byte.
+/// Least squared distance of colours, in units of 2⁻²⁴: a distance of 2⁻⁷, two steps of a byte. Scenes
+/// whose weights stay below it are refused: [`limits::LEAST_DISTANCE`](crate::scene::limits::LEAST_DISTANCE).
 pub const LEAST_SQUARED: u32 = 1 << 10;
 /// A threshold that every score passes.
 const NO_THRESHOLD: i32 = i32::MIN;

@@ -109,6 +109,8 @@ pub const BARE_GROUNDS: usize = 4;
 pub const HUE: Range = range(0.0, 360.0, "degrees");
 /// Of one difference of colours. Weighted distances are exact to 1/4096 up to here.
 pub const COLOUR_WEIGHT: Range = range(0.0, 8.0, "");
+/// Weighted distances of colours up to here are all the same: two steps of a byte.
+pub const LEAST_DISTANCE: f32 = 1.0 / 128.0;
 pub const SCORE_EXPONENT: Range = range(0.25, 16.0, "");
 pub const SCORE_THRESHOLD: Range = range(0.0, 1e30, "");
 pub const PETALS: Range = range(3.0, 64.0, "");

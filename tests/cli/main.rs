@@ -337,8 +337,30 @@ fn pictures_and_benches_refuse_nonsense_before_they_start() {
     ] {
         assert_eq!(code(&sward(wrong)), 2, "{wrong:?}");
     }
-    let missing = ["bench", "flight", "--height-map", "nowhere.png"];
-    assert_eq!(code(&sward(&missing)), 3);
+}
+
+/// A ground for the flight that is missing or of no use is told of by its name. One that is in the current
+/// folder is found there by its bare name: its own fault is told then.
+#[test]
+fn a_height_map_of_the_flight_is_looked_for_where_the_user_is() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("cli-flight");
+    std::fs::create_dir_all(&folder).expect("a writable target folder");
+    std::fs::write(folder.join("grey.png"), "no picture").expect("a writable folder");
+    for (file, told) in [
+        ("nowhere.png", "cannot read `nowhere.png`: No such file"),
+        ("none/here.png", "cannot read `none/here.png`: No such file"),
+        ("grey.png", "`grey.png` is damaged"),
+        ("./grey.png", "`grey.png` is damaged"),
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_sward"))
+            .args(["bench", "flight", "--height-map", file])
+            .current_dir(&folder)
+            .output()
+            .expect("the program starts");
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(code(&output), 3, "{text}");
+        assert!(text.contains(told) && !text.contains("--assets"), "{text}");
+    }
 }
 
 /// With an adapter there is a picture that tells what it shows, without one the code is 4.

@@ -55,7 +55,17 @@ impl FlightArguments {
         let Some(path) = &self.height_map else {
             return Ok(None);
         };
-        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        if let Err(error) = fs::metadata(path) {
+            let path = path.display();
+            let text =
+                format!("cannot read `{path}`: {error}; --height-map takes a 16-bit grey PNG");
+            return Err(Failure::BadGround(text));
+        }
+        // A bare name has an empty parent, which names no folder.
+        let parent = path
+            .parent()
+            .filter(|parent| !parent.as_os_str().is_empty());
+        let folder = parent.unwrap_or(Path::new(".")).to_path_buf();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let map = read_height_map(&name, &Folders::new([folder]))?;
         Ok(Some(FlownMap {

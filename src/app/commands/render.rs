@@ -79,7 +79,12 @@ pub struct Arguments {
     awake_tiles: bool,
     /// The sun's height over the horizon in degrees, 2 to 90, and after a comma where it stands, from +x
     /// towards +z
-    #[arg(long, value_name = "HEIGHT[,AZIMUTH]", value_parser = sun)]
+    #[arg(
+        long,
+        value_name = "HEIGHT[,AZIMUTH]",
+        allow_hyphen_values = true,
+        value_parser = sun
+    )]
     sun: Option<Sun>,
     /// How plants are submitted: by the exact counts of triangles, or by the 32 bins of P15
     #[arg(long, value_enum, default_value = "exact")]

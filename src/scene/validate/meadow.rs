@@ -1,6 +1,7 @@
 //! Ground, plants, wind and solver settings.
 
 use super::check::{Check, Key, at_most, name, ordered, within, within_each};
+use crate::base::most;
 use crate::scene::{Form, Grass, Ground, Likes, Response, Solver, Species, Terrain, Wind, limits};
 
 pub(super) fn terrain(key: &Key, terrain: &Terrain) -> Check {
@@ -107,8 +108,12 @@ fn likes(key: &Key, likes: &Likes) -> Check {
     }
     let weights = key.field("weights");
     within_each(&weights, &likes.weights, &limits::COLOUR_WEIGHT)?;
-    if likes.weights.iter().all(|&w| w < 1.0 / 4096.0) {
-        let what = "are all 0; a colour differs from others by at least one weight of 1/4096";
+    // Hues are at most half a turn apart, saturations and values 1.
+    let [hue, others @ ..] = likes.weights;
+    let farthest = others.into_iter().fold(0.5 * hue, most);
+    if farthest <= limits::LEAST_DISTANCE {
+        let what = "are so small that no colour differs from another: distances up to 1/128 count as none; \
+                    write more than 1/64 for the hue, or more than 1/128 for saturation or value";
         return weights.fail(what);
     }
     let exponent = key.field("exponent");
