@@ -2,7 +2,7 @@
 // src/render/coat.rs, src/render/coat_place.rs.
 //
 // Deviations: a plant bends by a formula in place of eq. 12, since most are short beside their lean; its
-// segments follow its height on the picture, which is eq. 4 but for the steps; leaves are shaped by their
+// segments follow its height on the picture, in place of eq. 4; leaves are shaped by their
 // strip in place of an alpha mask, and are as the blades of shaders/blades.wgsl widened to a pixel.
 #import "shared/coat.wgsl"
 #import "shared/frame.wgsl"

@@ -1,5 +1,7 @@
 //! Values of options: what a wrong one is told.
 
+use crate::render::Count;
+
 /// A number, for options whose limits the command itself checks and tells.
 ///
 /// # Errors
@@ -36,9 +38,57 @@ pub fn density(text: &str) -> Result<f32, String> {
     within.ok_or_else(|| format!("give a factor from {least} to {most}, such as 0.5"))
 }
 
+/// Least and most plants per pixel of the rules by area.
+const PER_PX: [f32; 2] = [0.001, 100.0];
+/// Plants per pixel where none are given: about as many as the rule by distance draws some metres off.
+const USUAL_PER_PX: f32 = 0.5;
+
+/// A rule by which the number of plants drawn is decided.
+///
+/// # Errors
+///
+/// A text that is none, with those that there are.
+pub fn count(text: &str) -> Result<Count, String> {
+    let (rule, per_px) = match text.split_once(',') {
+        Some((rule, per_px)) => (rule, per_px.parse().ok()),
+        None => (text, Some(USUAL_PER_PX)),
+    };
+    let [least, most] = PER_PX;
+    let per_px = per_px.filter(|per_px| (least..=most).contains(per_px));
+    match (rule, per_px) {
+        ("distance", _) if text == rule => Ok(Count::Distance),
+        ("projected", Some(per_px)) => Ok(Count::ProjectedArea { per_px }),
+        ("world", Some(per_px)) => Ok(Count::WorldArea { per_px }),
+        _ => Err(format!(
+            "give distance, or projected or world, with plants per pixel from {least} to {most} after a comma, \
+             such as projected,{USUAL_PER_PX}"
+        )),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rules_of_counting_have_names() {
+        assert_eq!(count("distance"), Ok(Count::Distance));
+        let per_px = USUAL_PER_PX;
+        assert_eq!(count("projected"), Ok(Count::ProjectedArea { per_px }));
+        assert_eq!(count("world,3"), Ok(Count::WorldArea { per_px: 3.0 }));
+        for wrong in [
+            "",
+            "near",
+            "distance,1",
+            "projected,",
+            "world,0",
+            "world,101",
+            "world,NaN",
+        ] {
+            let told = count(wrong).expect_err(wrong);
+            assert!(told.contains("0.001 to 100"), "{told}");
+        }
+    }
 
     #[test]
     fn densities_have_limits() {

@@ -236,13 +236,19 @@ pub(super) fn drawn_tiles(input: &BladesInput<'_>, view: &View, picture: Size) -
         .collect()
 }
 
-/// Doublings of the distance from that of full density, the reference of P15 eq. 4; below 0 before that.
+/// Doublings of the distance from that of full density; below 0 before that.
 fn level_at(detail: BladeDetail, distance_m: f64) -> f64 {
     let relative = distance_m / f64::from(detail.full_m);
     libm::log2(relative.max(1e-3))
 }
 
 /// Detail of the plants at a level, 0 the finest: each of the following is good for a doubling.
+///
+/// Deviation from P15 eq. 4, n = n_max (d_ref/d)² of every root: segments halve with every doubling of a
+/// tile's distance, n_max (d_ref/d), since a blade's height on the picture falls by as much and its segments
+/// keep their length there; a quarter would leave blades of five segments with one at twice the distance,
+/// where one of 0.4 m is still 14 of 720 pixels tall. Coarse details take every second or fourth node of the simulated
+/// ones, so that the pose needs no second formula; n_max is the scene's `segments` therefore.
 fn detail_of(level: f64) -> u32 {
     (level.max(0.0).ceil() as u32).min(DETAILS - 1)
 }
@@ -317,6 +323,7 @@ fn drawn_tile(input: &BladesInput<'_>, view: &View, picture: Size, sight: &Sight
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::plant_form::HALVING_STRIDES;
 
     #[test]
     fn detail_falls_with_distance() {
@@ -327,6 +334,21 @@ mod tests {
         assert_eq!(at(0.99 * 12.0), 0);
         assert_eq!(at(1.01 * 12.0), 1);
         assert_eq!(at(1e6), DETAILS - 1);
+    }
+
+    /// Segments at whole doublings of the distance, beside P15 eq. 4: the deviation that `detail_of` names.
+    #[test]
+    fn segments_halve_with_the_distance() {
+        let detail = BladeDetail::default();
+        for (doublings, segments, of_eq_4) in [(0, 8, 8.0), (1, 4, 2.0), (2, 2, 0.5)] {
+            let relative = f64::from(1 << doublings);
+            let distance_m = f64::from(detail.full_m) * relative;
+            let own = detail_of(level_at(detail, distance_m));
+            assert_eq!(8 / HALVING_STRIDES[own as usize], segments);
+            assert_eq!(8.0 / (relative * relative), of_eq_4);
+            assert_eq!(detail_of(level_at(detail, distance_m * 1.001)), own + 1);
+        }
+        assert_eq!(detail_of(level_at(detail, 0.1)), 0);
     }
 
     /// A detail ends as its next, and begins as itself.

@@ -15,7 +15,7 @@ pub(super) const FORM: FormDrawing = FormDrawing {
     vertex: "blade_vertex",
     fragment: "blade_fragment",
     topology: wgpu::PrimitiveTopology::TriangleStrip,
-    // P15 eq. 4 with the distance of full density as reference, in steps of whole nodes.
+    // In place of P15 eq. 4: see `detail_of`.
     strides: HALVING_STRIDES,
     vertices: |steps| 2 * steps + 1,
 };

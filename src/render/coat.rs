@@ -19,7 +19,7 @@ use super::error::RenderError;
 use super::pipeline::{Drawing, READ_STORAGE, UNIFORM, bind_group, group_layout};
 use super::view_group::ViewGroups;
 
-/// Segments of a plant, by form and detail: P15 eq. 4 in steps.
+/// Segments of a plant, by form and detail: by its height on the picture, in place of P15 eq. 4.
 pub(super) const STEPS: [[u32; COAT_DETAILS as usize]; COAT_FORMS as usize] =
     [[5, 3, 2], [5, 3, 1]];
 

@@ -81,7 +81,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
         return Err(Failure::Usage(text));
     }
     if !matches!(arguments.what, Bench::Flight) && arguments.flight.is_given() {
-        let text = "only bench flight takes --quick and --height-map: leave them out";
+        let text = "only bench flight takes --quick, --count and --height-map: leave them out";
         return Err(Failure::Usage(text.into()));
     }
     // A place that cannot be written to is told before time is spent on measuring.

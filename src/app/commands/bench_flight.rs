@@ -9,7 +9,9 @@ use clap::Args;
 use super::bench::{Arguments, file_name, tell, write_limits, write_machine};
 use crate::app::Failure;
 use crate::app::progress::Progress;
+use crate::app::values::count;
 use crate::gpu::Gpu;
+use crate::render::Count;
 use crate::run::Exit;
 use crate::run::bench::flight::FRAMES_PER_S;
 use crate::run::bench::flight::ground::FlownMap;
@@ -43,12 +45,15 @@ pub struct FlightArguments {
         requires = "height_map"
     )]
     height: f32,
+    /// Of `flight`: what decides how many plants are drawn, as for `render`
+    #[arg(long, value_name = "RULE[,PER_PX]", value_parser = count)]
+    count: Option<Count>,
 }
 
 impl FlightArguments {
     /// Whether any was given.
     pub(super) fn is_given(&self) -> bool {
-        self.quick || self.height_map.is_some()
+        self.quick || self.height_map.is_some() || self.count.is_some()
     }
 
     fn map(&self) -> Result<Option<FlownMap>, Failure> {
@@ -82,6 +87,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, F
     let request = FlightRequest {
         is_quick: arguments.flight.quick,
         map: arguments.flight.map()?,
+        count: arguments.flight.count,
     };
     let gpu = Gpu::headless()?;
     let progress = Progress::new("bench flight");

@@ -12,9 +12,9 @@ use crate::app::Failure;
 use crate::app::device::EngineArguments;
 use crate::app::light_up::light_up;
 use crate::app::progress::Progress;
-use crate::app::values::{density, number, whole};
+use crate::app::values::{count, density, number, whole};
 use crate::gpu::Gpu;
-use crate::render::{Animation, Picture, PictureTarget, Submission, Sun, View, scene_view};
+use crate::render::{Animation, Count, Picture, PictureTarget, Submission, Sun, View, scene_view};
 use crate::run::{Exit, Stage};
 use crate::scene::{Camera, limits};
 
@@ -93,6 +93,10 @@ pub struct Arguments {
     /// stay as many
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = density)]
     density: f32,
+    /// What decides how many plants are drawn: distance, or P15's projected (eq. 1) or world (eq. 2) area of a
+    /// seeding triangle, with plants per pixel after a comma
+    #[arg(long, value_name = "RULE[,PER_PX]", default_value = "distance", value_parser = count)]
+    count: Count,
     /// Leave the shadows of plants on the ground out
     #[arg(long)]
     no_plant_shadows: bool,
@@ -132,6 +136,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     stage.camera(arguments.camera.as_deref())?;
     stage.sun = arguments.sun.unwrap_or(stage.sun);
     stage.detail.density = arguments.density;
+    stage.detail.count = arguments.count;
     stage.resting_boxes = !arguments.awake_tiles;
     stage.detail.shadows &= !arguments.no_plant_shadows;
     stage.detail.submission = match arguments.submission {

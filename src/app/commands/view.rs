@@ -9,8 +9,9 @@ use super::outputs::make_folder;
 use super::render::size;
 use super::scene_file;
 use crate::app::device::EngineArguments;
-use crate::app::values::density;
+use crate::app::values::{count, density};
 use crate::app::{Failure, window};
+use crate::render::Count;
 use crate::run::Exit;
 
 /// Open a scene in a window; without a display, run it and write a picture
@@ -31,6 +32,10 @@ pub struct Arguments {
     /// stay as many
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = density)]
     density: f32,
+    /// What decides how many plants are drawn: distance, or P15's projected (eq. 1) or world (eq. 2) area of a
+    /// seeding triangle, with plants per pixel after a comma
+    #[arg(long, value_name = "RULE[,PER_PX]", default_value = "distance", value_parser = count)]
+    count: Count,
     /// Folder for pictures: those saved with F12, and the one written without a display; by default
     /// the current folder
     #[arg(long, value_name = "DIR")]
@@ -45,6 +50,7 @@ impl Default for Arguments {
             assets: Vec::new(),
             size: [1280, 720],
             density: 1.0,
+            count: Count::Distance,
             out: None,
         }
     }
@@ -62,6 +68,7 @@ pub fn run(arguments: Arguments, out: &mut impl Write) -> Result<Exit, Failure> 
         engine: arguments.engine.choice()?,
         size: arguments.size,
         density: arguments.density,
+        count: arguments.count,
         out: arguments.out.unwrap_or_else(|| PathBuf::from(".")),
     };
     window::open(&options, out)

@@ -62,6 +62,7 @@ fn with_picture(
         options.size,
     )?;
     stage.detail.density = options.density;
+    stage.detail.count = options.count;
     while stage.meadow().time_s() < loaded.scene.duration_s {
         stage.tick()?;
     }

@@ -26,6 +26,7 @@ use std::path::PathBuf;
 use winit::event_loop::EventLoop;
 
 use super::{Failure, complain};
+use crate::render::Count;
 use crate::run::{EngineChoice, Exit};
 use scenes::SceneList;
 
@@ -41,6 +42,8 @@ pub struct Options {
     pub size: [u32; 2],
     /// Factor of the number of plants drawn.
     pub density: f32,
+    /// What decides how many plants are drawn.
+    pub count: Count,
     /// Folder for pictures.
     pub out: PathBuf,
 }

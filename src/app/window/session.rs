@@ -119,6 +119,7 @@ impl Session {
             play.stage.detail = SOFTWARE_DETAIL;
         }
         play.stage.detail.density = options.density;
+        play.stage.detail.count = options.count;
         let mut session = Self {
             ui: Ui::new(&gpu, &window),
             surface,

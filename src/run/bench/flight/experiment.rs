@@ -9,7 +9,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::gpu::Gpu;
-use crate::render::{BladeDetail, FrameInput, PictureTarget};
+use crate::render::{BladeDetail, Count, FrameInput, PictureTarget};
 use crate::run::bench::machine::{Machine, peak_memory_bytes};
 use crate::run::bench::still_field::{DrawBenchError, StillField};
 use crate::run::bench::terrain::{MOST_GROWTH, MOST_TRAVERSAL_MS, SIDES_M, TerrainBenchError};
@@ -39,6 +39,8 @@ pub struct FlightRequest {
     pub is_quick: bool,
     /// The ground; `None` for hills of 20 km² sampled at 5 m.
     pub map: Option<FlownMap>,
+    /// What decides how many plants are drawn; `None` for their distance.
+    pub count: Option<Count>,
 }
 
 /// Why the flight cannot be flown.
@@ -128,7 +130,10 @@ pub fn bench_flight(
 ) -> Result<FlightBench, FlightError> {
     let machine = Machine::now();
     let (picture, frames_per_s, rounds) = effort(gpu, request.is_quick);
-    let detail = BladeDetail::of_device(gpu);
+    let detail = BladeDetail {
+        count: request.count.unwrap_or(Count::Distance),
+        ..BladeDetail::of_device(gpu)
+    };
     let ground = FlownGround::new(SIDE_M, request.map.as_ref()).map_err(DrawBenchError::from)?;
     let still = ground.field(gpu, CLUSTER, picture)?;
     let mut flight = Flight {
