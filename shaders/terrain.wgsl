@@ -380,10 +380,11 @@ fn lit_ground(in: GroundPoint) -> vec4f {
     // Between the two sides of the footprint, so that near detail does not blur at once.
     let pixel_m = distance * frame.pixel_rad / sqrt(facing_eye);
     let uv = in.place_in_field / ground.map_m;
-    let map_rgb = textureSampleLevel(base_colour, base_sampler, uv, 0.0).rgb;
+    let map_rgb = textureSampleGrad(base_colour, base_sampler, uv, dpdx(uv), dpdy(uv)).rgb;
     // Mirror images of the field would show from a hill: the land turns to its mean colour.
     // Sharp figures, such as paths, would show sooner.
-    let strays = select(vec2f(5.0, 50.0), vec2f(0.0, LAND_BLENDS_M), field.taste_count > 0u);
+    let mirrored_m = max(50.0, 0.4 * min(ground.size_m.x, ground.size_m.y));
+    let strays = select(vec2f(5.0, mirrored_m), vec2f(0.0, LAND_BLENDS_M), field.taste_count > 0u);
     let base = mix(map_rgb, ground.mean_rgb, smoothstep(strays.x, strays.y, in.beyond_m));
 
     // As fewer blades are drawn, the ground takes over their look.

@@ -36,6 +36,5 @@ pub use field_data::FieldBuffers;
 pub use grass::{Dispatches, GpuGrass, GrassKernels, knows_method};
 pub use grass_state::{Counts, GpuState};
 pub use layout::GpuStruct;
-pub(crate) use texture::rgba8_texture;
 pub use tick::{TickError, tick};
 pub use timing::PassTimer;

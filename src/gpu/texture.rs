@@ -7,7 +7,7 @@ use super::{Gpu, GpuError};
 ///
 /// # Errors
 /// The driver's, as when memory is short.
-pub(crate) fn rgba8_texture(
+pub(super) fn rgba8_texture(
     gpu: &Gpu,
     label: &'static str,
     format: wgpu::TextureFormat,

@@ -3,10 +3,11 @@
 
 use crate::field::Field;
 use crate::field::kinds::MAX_TASTES;
-use crate::gpu::{Gpu, rgba8_texture};
+use crate::gpu::Gpu;
 use crate::scene::Form;
 use crate::terrain::ColourMap;
 
+use super::colour_mips::{linear_texels, srgb_texture};
 use super::error::RenderError;
 
 /// How the ground looks.
@@ -50,13 +51,7 @@ impl GroundTexture {
                 wanted: "give four bytes per texel",
             });
         }
-        let texture = rgba8_texture(
-            gpu,
-            "the base-colour map",
-            wgpu::TextureFormat::Rgba8UnormSrgb,
-            [width, height],
-            Some(&map.rgba8),
-        )?;
+        let texture = srgb_texture(gpu, "the base-colour map", [width, height], &map.rgba8)?;
         // Mirrored, so that the land beyond the edge goes on in the field's colours.
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("base colour"),
@@ -64,6 +59,7 @@ impl GroundTexture {
             address_mode_v: wgpu::AddressMode::MirrorRepeat,
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
             ..Default::default()
         });
         Ok(Self {
@@ -99,19 +95,13 @@ pub(super) fn looks(field: &Field) -> [[u32; 4]; TASTE_ROWS as usize] {
 /// Mean of sRGB-encoded texels, as linear light.
 fn mean_rgb(rgba8: &[u8]) -> [f32; 3] {
     let mut sum = [0.0_f64; 3];
-    for texel in rgba8.chunks_exact(4) {
-        for (total, &byte) in sum.iter_mut().zip(texel) {
-            let encoded = f64::from(byte) / 255.0;
-            // IEC 61966-2-1.
-            *total += if encoded <= 0.04045 {
-                encoded / 12.92
-            } else {
-                ((encoded + 0.055) / 1.055).powf(2.4)
-            };
+    let texels = linear_texels(rgba8);
+    for texel in &texels {
+        for (total, &light) in sum.iter_mut().zip(texel) {
+            *total += f64::from(light);
         }
     }
-    let texels = (rgba8.len() / 4).max(1) as f64;
-    sum.map(|total| (total / texels) as f32)
+    sum.map(|total| (total / texels.len().max(1) as f64) as f32)
 }
 
 #[cfg(test)]

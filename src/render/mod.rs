@@ -18,6 +18,7 @@ mod clump_textures;
 mod coat;
 mod coat_place;
 mod coat_scene;
+mod colour_mips;
 mod error;
 mod flowers;
 mod frame;

@@ -3,7 +3,7 @@
 //! The rules here are the ones the terrain and the field follow, so that the numbers in an error
 //! are the numbers that would have been allocated.
 
-use super::limits::{HEIGHT_SAMPLES, PLANTS, PLANTS_PER_TILE, SEEDING_TRIANGLES, TILES};
+use super::limits::{HEIGHT_SAMPLES, PLANTS_PER_TILE, SEEDING_TRIANGLES, TILES};
 use super::{Grass, Ground, Solver};
 
 /// Most halvings of the height samples' spacing.
@@ -86,6 +86,20 @@ pub fn spacing_m(ground: &Ground) -> f32 {
     }
 }
 
+/// What to write where a ground of so many seeding cells has too many tiles.
+fn wider_tiles(cells: [u64; 2], cell_m: f32) -> String {
+    let fits = |side: &u64| {
+        let [x, z] = cells.map(|n| n.div_ceil(*side));
+        x.checked_mul(z).is_some_and(|tiles| tiles <= TILES)
+    };
+    match [2, 4].into_iter().find(fits) {
+        Some(side) => format!("write a tile_m of {} m", side as f32 * cell_m),
+        None => {
+            format!("make the ground smaller, or the seeding cells of {cell_m} m and tile_m larger")
+        }
+    }
+}
+
 /// Counts what a field of these settings holds; each of them must have passed its own range.
 ///
 /// # Errors
@@ -154,13 +168,8 @@ pub fn field_size(
     let [x, z] = cells.map(|n| n.div_ceil(tile_cells.into()));
     let tiles = product(x, z);
     let tiles = within(tiles, TILES).ok_or_else(|| {
-        over(
-            "terrain.ground",
-            text(tiles),
-            "tiles",
-            TILES,
-            "make the ground smaller or tile_m larger",
-        )
+        let hint = wider_tiles(cells, cell_m);
+        over("terrain.ground", text(tiles), "tiles", TILES, &hint)
     })?;
 
     let grows = !grass.species.is_empty();
@@ -186,16 +195,6 @@ pub fn field_size(
     })?;
     // Below 2³² · 2¹⁶, so the float holds it to the last plant in a million.
     let plants = (per_triangle * triangles as f64).ceil() as u64;
-    if plants > PLANTS {
-        let hint = "lower density_per_m2 or make the ground smaller";
-        return Err(over(
-            "grass.density_per_m2",
-            plants.to_string(),
-            "plants",
-            PLANTS,
-            hint,
-        ));
-    }
     Ok(FieldSize {
         samples,
         size_m: samples.map(|n| n.saturating_sub(1) as f64 * f64::from(spacing)),
@@ -291,7 +290,12 @@ mod tests {
         );
         let text = what(&flat([8000.0, 8000.0], 2.0), &grass, &solver);
         assert!(
-            text.contains("64000000 tiles") && text.contains("16777216"),
+            text.contains("64000000 tiles, more than the limit of 16777216; write a tile_m of 2 m"),
+            "{text}"
+        );
+        let text = what(&flat([9000.0, 9000.0], 3.0), &grass, &solver);
+        assert!(
+            text.contains("make the ground smaller, or the seeding cells"),
             "{text}"
         );
         let dense = Grass {
@@ -312,8 +316,8 @@ mod tests {
             density_per_m2: 2000.0,
             ..Grass::default()
         };
-        let text = what(&flat([3000.0, 3000.0], 1.0), &many, &solver);
-        assert!(text.contains("18000000000 plants"), "{text}");
+        let size = size_of(&flat([3000.0, 3000.0], 1.0), &many, &solver);
+        assert_eq!(size.map(|size| size.plants), Ok(18_000_000_000));
         let text = what(&flat([8.0, 8.0], 0.1), &grass, &solver);
         assert!(text.starts_with("solver.tile_m: is 1 m"), "{text}");
     }

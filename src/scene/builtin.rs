@@ -31,6 +31,7 @@ pub const SCENES: &[Builtin] = builtin![
     "ball_drop",
     "ball_roll",
     "boulders",
+    "country",
     "heath",
     "hills",
     "hundred_bodies",

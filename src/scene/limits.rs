@@ -69,9 +69,8 @@ pub const HEIGHT_MAP_SIDE: u32 = 16_384;
 pub const TILES: u64 = 1 << 24;
 /// Seeding triangles: their ids are 32-bit words.
 pub const SEEDING_TRIANGLES: u64 = 1 << 32;
-/// Plants of a field, resting ones included.
-pub const PLANTS: u64 = 1 << 32;
-/// Plants of one tile.
+/// Plants of one tile. Those of a field have no limit of their own: at rest none of them is stored, and each
+/// is known by its triangle and its number there.
 pub const PLANTS_PER_TILE: u64 = 65_536;
 
 pub const PLANT_DENSITY: Range = range(0.0, 10_000.0, "plants/m2");

@@ -5,7 +5,7 @@ use sward::base::Vec3;
 use sward::gpu::Gpu;
 use sward::render::{Picture, Sun, View};
 
-use super::{ALL, Shown, Stage, WHOLE, hold};
+use super::{ALL, Shown, Stage, hold};
 
 /// How much lighter or darker the ground may be than the blades that it stands for. Their meeting is drawn
 /// over tens of metres, and single blades differ by far more than this from each other; with the light of
