@@ -27,6 +27,8 @@ mod counted;
 mod engines;
 #[path = "pictures/ground.rs"]
 mod ground;
+#[path = "pictures/identity.rs"]
+mod identity;
 #[path = "pictures/light.rs"]
 mod light;
 #[path = "pictures/refined.rs"]
@@ -60,6 +62,11 @@ const CHECKS: &[(&str, Check)] = &[
         "plants_are_sorted_by_form",
         counted::plants_are_sorted_by_form,
     ),
+    (
+        "plants_are_the_same_on_a_camera_path",
+        identity::plants_are_the_same_on_a_camera_path,
+    ),
+    ("cameras_change_no_state", identity::cameras_change_no_state),
     (
         "density_follows_the_equations",
         counted::density_follows_the_equations,

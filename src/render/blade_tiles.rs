@@ -142,7 +142,7 @@ impl BladeDetail {
 
 gpu_struct! {
     pub(super) struct DrawnTile {
-        tile: TileRecord,
+        pub(super) tile: TileRecord,
         anchor_from_eye: [f32; 3],
         bound: f32,
         pub(super) detail: u32,

@@ -17,6 +17,7 @@ use super::ground_look::{GroundLook, GroundTexture};
 use super::ground_mesh::TerrainDetail;
 use super::light::{LightTexels, check_layers};
 use super::overlay::{OverlayLayer, TileMark};
+use super::plant_list::ListedPlant;
 use super::plants::{BladeCounts, BladesInput, DrawnPlants, PlantsLayer};
 use super::seed_triangles::SeededTriangles;
 use super::shadow::{ShadowFit, ShadowMap};
@@ -211,6 +212,14 @@ impl Renderer {
     /// The device's.
     pub fn drawn_plants(&self, gpu: &Gpu) -> Result<Vec<DrawnPlants>, RenderError> {
         Ok(self.plants.read_counts(gpu)?)
+    }
+
+    /// Every plant that the last frame drew, read back from the device: for tests, since it waits.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn listed_plants(&self, gpu: &Gpu) -> Result<Vec<ListedPlant>, RenderError> {
+        Ok(self.plants.read_list(gpu)?)
     }
 
     /// What the last frame drew of the coats, read back from the device: for tests and benches, since it

@@ -18,6 +18,7 @@ use super::canopy::Canopy;
 use super::ground_look::GroundTexture;
 use super::pipeline::{Drawing, READ_STORAGE, SAMPLER, TEXTURE, UNIFORM, bind_group, group_layout};
 use super::plant_form::{BUCKETS, DETAILS, FORM_BLADE, FORMS, FormDrawing, form_index};
+use super::plant_list::{self, ListedPlant};
 use super::seed_triangles::SeededTriangles;
 use super::sort_plants::{DrawArgs, PlantSort, SeededClusters, SortInput};
 use super::view_group::ViewGroups;
@@ -337,6 +338,14 @@ impl PlantsLayer {
     }
 
     /// Reads back what the last frame drew, by form. Waits for the device: for tests and benches.
+    ///
+    /// # Errors
+    /// The device's.
+    pub(super) fn read_list(&self, gpu: &Gpu) -> Result<Vec<ListedPlant>, GpuError> {
+        plant_list::read(gpu, &self.sort)
+    }
+
+    /// What the last frame drew of every form, counted by the device. Waits for it.
     ///
     /// # Errors
     /// The device's.

@@ -104,7 +104,7 @@ gpu_struct! {
         pub(super) instances: u32,
         first_vertex: u32,
         first_instance: u32,
-        start: u32,
+        pub(super) start: u32,
     }
 }
 

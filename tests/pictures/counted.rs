@@ -13,7 +13,7 @@ use sward::scene::Form;
 use super::{SIZE, Stage, hold};
 
 /// Two kinds on lush and dry ground, and stones on what is drier.
-const KINDS: &str =
+pub const KINDS: &str =
     "(terrain: (ground: Rolling(size_m: (7, 6), amplitude_m: 0.3, wavelength_m: 4)),
     grass: (density_per_m2: 90, cluster: 2, species: [
         (name: \"a\", likes: Some((hsv: (88, 0.5, 0.45)))),
@@ -101,12 +101,8 @@ fn expected(field: &Field, view: &View, detail: BladeDetail) -> (BTreeMap<&'stat
     (plants, mean)
 }
 
-fn drawn(
-    gpu: &Gpu,
-    stage: &mut Stage,
-    view: &View,
-    detail: BladeDetail,
-) -> Result<BTreeMap<&'static str, u64>, Failed> {
+/// Draws the field's plants at rest.
+pub fn draw(gpu: &Gpu, stage: &mut Stage, view: &View, detail: BladeDetail) -> Result<(), Failed> {
     let input = FrameInput {
         view,
         sun: Sun::default(),
@@ -125,13 +121,22 @@ fn drawn(
     };
     let mut timer = PassTimer::new(gpu, 8);
     let target = &stage.target.view;
-    stage.renderer.draw(gpu, &input, target, &mut timer)?;
+    Ok(stage.renderer.draw(gpu, &input, target, &mut timer)?)
+}
+
+fn drawn(
+    gpu: &Gpu,
+    stage: &mut Stage,
+    view: &View,
+    detail: BladeDetail,
+) -> Result<BTreeMap<&'static str, u64>, Failed> {
+    draw(gpu, stage, view, detail)?;
     let counts = stage.renderer.drawn_plants(gpu)?;
     let some = counts.iter().filter(|one| one.plants > 0);
     Ok(some.map(|one| (one.form, one.plants)).collect())
 }
 
-/// Every plant that a rule draws is in its form's list, and no other. Counts of triangles follow
+/// As many plants as a rule draws are in their form's list. Counts of triangles follow
 /// from areas in single precision, which may round one in some thousands another way.
 pub fn plants_are_sorted_by_form(gpu: &Gpu) -> Result<(), Failed> {
     let mut stage = Stage::new(gpu, KINDS, 0)?;
@@ -160,8 +165,7 @@ pub fn plants_are_sorted_by_form(gpu: &Gpu) -> Result<(), Failed> {
     Ok(())
 }
 
-/// Every rule draws as many times the plants as the density says, and of each triangle the first of
-/// its sequence: those that stay are the same.
+/// Every rule draws as many times the plants as the density says.
 pub fn density_is_a_factor_of_the_prefix(gpu: &Gpu) -> Result<(), Failed> {
     let mut stage = Stage::new(gpu, KINDS, 0)?;
     let view = View::look_at(Vec3::of(EYE_M), Vec3::ZERO, 60.0);
