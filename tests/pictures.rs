@@ -33,6 +33,8 @@ mod identity;
 mod light;
 #[path = "pictures/refined.rs"]
 mod refined;
+#[path = "pictures/refused.rs"]
+mod refused;
 #[path = "pictures/stones.rs"]
 mod stones;
 #[path = "pictures/waking.rs"]
@@ -120,7 +122,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("stones_lie_where_shoved", stones::stones_lie_where_shoved),
     (
         "what_cannot_be_drawn_is_refused",
-        what_cannot_be_drawn_is_refused,
+        refused::what_cannot_be_drawn_is_refused,
     ),
 ];
 
@@ -442,43 +444,6 @@ fn pressed_grass_shows(gpu: &Gpu) -> Result<(), Failed> {
     hold(
         near > 10.0 && far < 0.01,
         format!("near the press {near} steps, far from it {far}"),
-    )
-}
-
-fn what_cannot_be_drawn_is_refused(gpu: &Gpu) -> Result<(), Failed> {
-    for size in [[0, 10], [10, 0], [1 << 20, 10], [8192, 8192]] {
-        match Renderer::new(gpu, PictureTarget::FORMAT, size) {
-            Err(error) => {
-                let text = error.to_string();
-                let named = size.iter().all(|side| text.contains(&side.to_string()));
-                hold(named, format!("{size:?}: {text}"))?;
-            }
-            Ok(_) => {
-                // A device may well hold the last one.
-                hold(size == [8192, 8192], format!("{size:?} was taken"))?;
-            }
-        }
-    }
-    let mut stage = Stage::new(gpu, BALL, 1)?;
-    let mut bodies = bodies_at(&stage.meadow, 1.0);
-    bodies[0].shape = 99;
-    let input = FrameInput {
-        view: &ALL.view,
-        sun: Sun::default(),
-        exposure: Exposure::default(),
-        bodies: &bodies,
-        blades: None,
-        marks: &[],
-        time_s: 0.0,
-    };
-    let mut timer = PassTimer::new(gpu, 8);
-    let refused = stage
-        .renderer
-        .draw(gpu, &input, &stage.target.view, &mut timer);
-    let text = refused.err().map(|error| error.to_string());
-    hold(
-        text.as_ref().is_some_and(|text| text.contains("shape 99")),
-        format!("{text:?}"),
     )
 }
 

@@ -10,7 +10,8 @@ use serde::Serialize;
 use super::bench_flight::FlightArguments;
 use super::outputs::make_folder;
 use super::{
-    bench_flight, bench_light, bench_popping, bench_submission, bench_terrain, scene_file,
+    bench_bodies, bench_flight, bench_light, bench_popping, bench_submission, bench_terrain,
+    scene_file,
 };
 use crate::app::Failure;
 use crate::app::device::EngineArguments;
@@ -26,7 +27,7 @@ pub struct Arguments {
     #[arg(value_enum)]
     what: Bench,
     #[command(flatten)]
-    engine: EngineArguments,
+    pub(super) engine: EngineArguments,
     /// Print the results as JSON
     #[arg(long)]
     pub(super) json: bool,
@@ -44,6 +45,8 @@ pub struct Arguments {
 enum Bench {
     /// Cost by the number of tiles, in total and active
     Tiles,
+    /// Cost by the number of bodies on the same active tiles, of blades and of billboards
+    Bodies,
     /// Cost of the ground and of finding the plants in view, by the terrain's size; on the
     /// processor alone
     Terrain,
@@ -73,7 +76,8 @@ const MILLION: &str = "million_blades";
 
 /// Runs the bench and prints its tables.
 pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure> {
-    if !matches!(arguments.what, Bench::Tiles) && arguments.engine.is_chosen() {
+    let runs_an_engine = matches!(arguments.what, Bench::Tiles | Bench::Bodies);
+    if !runs_an_engine && arguments.engine.is_chosen() {
         let text = format!(
             "bench {} runs no engine: leave --engine and --require-gpu out",
             arguments.what.name()
@@ -90,6 +94,7 @@ pub fn run(arguments: &Arguments, out: &mut impl Write) -> Result<Exit, Failure>
     }
     match arguments.what {
         Bench::Tiles => run_tiles(arguments, out),
+        Bench::Bodies => bench_bodies::run(arguments, out),
         Bench::Terrain => bench_terrain::run(arguments, out),
         Bench::Flight => bench_flight::run(arguments, out),
         Bench::Light => bench_light::run(arguments, out),

@@ -1,6 +1,7 @@
 //! The commands: one file each, with its arguments and what it prints.
 
 pub mod bench;
+mod bench_bodies;
 mod bench_flight;
 mod bench_light;
 mod bench_popping;

@@ -1,5 +1,6 @@
 //! Benches: speed, always with the error beside it.
 
+pub mod bodies;
 pub mod flight;
 pub mod light;
 pub mod machine;
@@ -10,6 +11,7 @@ pub mod submission;
 pub mod terrain;
 pub mod tiles;
 
+pub use bodies::{BodiesBench, bench_bodies};
 pub use flight::{FlightBench, FlightRequest, bench_flight};
 pub use light::{LightBench, bench_light};
 pub use machine::Machine;

@@ -118,8 +118,8 @@ const CIRCLE_PITCH_M: f64 = 10.0;
 /// Balls roll on circles of this radius, in metres.
 const CIRCLE_M: f64 = 2.0;
 /// Time for a circle, in seconds.
-const CIRCLE_S: f64 = 4.0;
-const BALL_RADIUS_M: f32 = 0.25;
+pub(super) const CIRCLE_S: f64 = 4.0;
+pub(super) const BALL_RADIUS_M: f32 = 0.25;
 /// Way points of a circle.
 const CIRCLE_POINTS: u32 = 16;
 
@@ -143,16 +143,22 @@ pub(super) fn circles(side_m: f32, balls: u32) -> Scene {
             ..Solver::default()
         },
         bodies: (0..balls)
-            .map(|n| circling_ball(n, [place(n % across), place(n / across)]))
+            .map(|n| {
+                let ball = Shape::Ball {
+                    radius_m: BALL_RADIUS_M,
+                };
+                circling(n, ball, [place(n % across), place(n / across)], 0.0)
+            })
             .collect(),
         ..Scene::default()
     }
 }
 
-fn circling_ball(number: u32, middle_m: [f64; 2]) -> Body {
+/// A body that is led round a circle on the ground, which it begins at a share of its turn.
+pub(super) fn circling(number: u32, shape: Shape, middle_m: [f64; 2], phase: f64) -> Body {
     let waypoints = (0..=CIRCLE_POINTS).map(|n| {
         let share = f64::from(n) / f64::from(CIRCLE_POINTS);
-        let angle = share * std::f64::consts::TAU;
+        let angle = (phase + share) * std::f64::consts::TAU;
         let [x, z] = [angle.cos(), angle.sin()].map(|c| c * CIRCLE_M);
         Waypoint {
             at_s: share * CIRCLE_S,
@@ -161,10 +167,8 @@ fn circling_ball(number: u32, middle_m: [f64; 2]) -> Body {
         }
     });
     Body {
-        name: format!("ball {number:02}"),
-        shape: Shape::Ball {
-            radius_m: BALL_RADIUS_M,
-        },
+        name: format!("body {number:03}"),
+        shape,
         position_m: [0.0; 3],
         above_ground: false,
         rotation_deg: [0.0; 3],
