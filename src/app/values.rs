@@ -40,7 +40,7 @@ pub fn density(text: &str) -> Result<f32, String> {
 
 /// Least and most plants per pixel of the rules by area.
 const PER_PX: [f32; 2] = [0.001, 100.0];
-/// Plants per pixel where none are given: about as many as the rule by distance draws some metres off.
+/// Plants per pixel where none are given.
 const USUAL_PER_PX: f32 = 0.5;
 
 /// A rule by which the number of plants drawn is decided.

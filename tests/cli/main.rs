@@ -331,6 +331,12 @@ fn pictures_and_benches_refuse_nonsense_before_they_start() {
         &[
             "render", "still", "--at", "1", "--frames", "0", "--out", "a.png",
         ],
+        &[
+            "render", "still", "--at", "1", "--sun", "-5", "--out", "a.png",
+        ],
+        &[
+            "render", "still", "--at", "1", "--count", "few", "--out", "a.png",
+        ],
         &["run", "still", "--engine", "cpu", "--require-gpu"],
         &["bench", "nothing"],
         &["bench", "flight", "--spacing", "5"],

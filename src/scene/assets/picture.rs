@@ -55,9 +55,11 @@ pub(super) fn unpack(file: &str, bytes: &[u8], wanted: &Wanted) -> Result<Unpack
     let (columns, rows) = (header.width, header.height);
     let format = (header.color_type, header.bit_depth);
     if !wanted.formats.contains(&format) {
+        let bits = format.1 as u8;
+        let article = if bits == 8 { "an" } else { "a" };
         return Err(AssetError::Format {
             file: file.to_owned(),
-            found: format!("a {}-bit {:?} PNG", format.1 as u8, format.0),
+            found: format!("{article} {bits}-bit {:?} PNG", format.0),
             wanted: wanted.as_text,
         });
     }
